@@ -8,11 +8,13 @@ use asperity::internals::bench::input;
 use asperity::internals::bench::traffic::Sizes;
 use asperity::internals::compute::Compute;
 use asperity::internals::compute::gpu::adapters::adapters;
+use asperity::internals::compute::gpu::arguments::Argument;
+use asperity::internals::compute::gpu::error::ArgumentFlaw;
 use asperity::internals::compute::gpu::linear::parts::Part;
 use asperity::internals::compute::gpu::material::{self, Answers};
 use asperity::internals::compute::gpu::report::{Surroundings, report};
-use asperity::internals::compute::gpu::shader_sources::{Binding, Kernel, Precision, Source};
-use asperity::internals::compute::gpu::{DeviceRequest, Evaluation, Gpu, GpuContext, GpuError, KernelTimes};
+use asperity::internals::compute::gpu::source::{Precision, Source};
+use asperity::internals::compute::gpu::{DeviceRequest, Evaluation, Gpu, GpuContext, GpuError, Kernel, KernelTimes};
 use asperity::internals::compute::traffic::Traffic;
 use asperity::internals::simulation::drive::{Drive, Ending, Observer, StepView};
 use asperity::internals::simulation::problem::Problem;
@@ -25,9 +27,9 @@ use std::process::Command;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-static DOUBLE: Kernel = Kernel {
-    name: "double",
-    sources: &[Source {
+static DOUBLE: Kernel = Kernel::new(
+    "double",
+    &[Source {
         path: "tests/device_layer.rs",
         text: "
 @group(0) @binding(0) var<storage, read_write> values: array<real>;
@@ -39,13 +41,11 @@ fn double(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 ",
     }],
-    bindings: &[Binding::ReadWrite],
-    workgroup: 64,
-};
+);
 
 fn double(context: &GpuContext, start: &[f32], times: usize) -> Result<Vec<f32>, GpuError> {
     let values = context.array("values", start)?;
-    let bound = context.bind(&context.pipeline(&DOUBLE, Precision::F32)?, vec![values.binding()])?;
+    let bound = context.bind(&DOUBLE, Precision::F32, &[values.named("values")])?;
     let mut list = context.record();
     for _ in 0..times {
         list.dispatch(&bound, start.len(), 1)?;
@@ -71,7 +71,7 @@ fn a_list_after_a_slow_one_goes_in_pieces_with_the_same_numbers() {
     let Some(context) = device("device_layer", Precision::F32) else { return };
     let context = context.with_longest_submission(Duration::ZERO);
     let values = context.array("values", &[1.0f32; 1000]).unwrap();
-    let bound = context.bind(&context.pipeline(&DOUBLE, Precision::F32).unwrap(), vec![values.binding()]).unwrap();
+    let bound = context.bind(&DOUBLE, Precision::F32, &[values.named("values")]).unwrap();
     let before = context.traffic();
     for (lists, ahead) in [(1, 0), (2, 4), (3, 8)] {
         let mut list = context.record();
@@ -129,8 +129,7 @@ fn parts_of_arrays_and_empty_ones() {
 fn a_lost_device_hands_out_nothing() {
     let Some(context) = device("device_layer", Precision::F32) else { return };
     let values = context.array("values", &[1.0f32; 100]).unwrap();
-    let pipeline = context.pipeline(&DOUBLE, Precision::F32).unwrap();
-    let bound = context.bind(&pipeline, vec![values.binding()]).unwrap();
+    let bound = context.bind(&DOUBLE, Precision::F32, &[values.named("values")]).unwrap();
     assert_eq!(context.download(&values).unwrap(), [1.0; 100]);
     let mut list = context.record();
     list.dispatch(&bound, 100, 1).unwrap();
@@ -168,23 +167,23 @@ fn what_does_not_fit_is_refused_before_it_is_tried() {
 
 #[test]
 fn a_fault_of_the_program_is_an_error_with_its_place() {
-    static BROKEN: Kernel = Kernel {
-        name: "broken",
-        sources: &[Source {
-            path: "shaders/broken.wgsl",
-            text: "@compute @workgroup_size(1)\nfn broken() {\n    let a: real = 1u;\n}\n",
-        }],
-        bindings: &[],
-        workgroup: 1,
-    };
+    static BROKEN: Kernel = Kernel::new(
+        "broken",
+        &[Source { path: "shaders/broken.wgsl", text: "@compute @workgroup_size(1)\nfn broken() {\n    let a: real = 1u;\n}\n" }],
+    );
     let Some(context) = device("device_layer", Precision::F32) else { return };
     let error = context.pipeline(&BROKEN, Precision::F32).unwrap_err();
     assert!(matches!(&error, GpuError::Shader { place, .. } if place == "shaders/broken.wgsl:3"), "{error}");
-    // a wrong number of arguments, an argument of the wrong kind
-    let pipeline = context.pipeline(&DOUBLE, Precision::F32).unwrap();
-    assert!(matches!(context.bind(&pipeline, vec![]), Err(GpuError::Length { expected: 1, given: 0, .. })));
+    // an argument that is missing, unknown or there twice, and one of the wrong kind
+    let values = context.array("values", &[1.0f32]).unwrap();
     let block = context.block::<[f32; 4]>("block").unwrap();
-    assert!(matches!(context.bind(&pipeline, vec![block.binding()]), Err(GpuError::Rejected { .. })));
+    let bind = |arguments: &[Argument<'_>]| context.bind(&DOUBLE, Precision::F32, arguments).map(drop).unwrap_err();
+    let flawed = |name: &str, flaw| GpuError::Argument { kernel: "double", name: name.to_owned(), flaw };
+    assert_eq!(bind(&[]), flawed("values", ArgumentFlaw::Missing));
+    let [right, other] = ["values", "value"].map(|name| values.named(name));
+    assert_eq!(bind(&[right.clone(), other]), flawed("value", ArgumentFlaw::Unknown));
+    assert_eq!(bind(&[right.clone(), right]), flawed("values", ArgumentFlaw::Doubled));
+    assert!(matches!(bind(&[block.named("values")]), GpuError::Rejected { .. }));
     // none of this harms the device
     assert_eq!(double(&context, &[3.0], 1).unwrap(), [6.0]);
 }
@@ -300,7 +299,7 @@ fn a_profile_has_every_dispatch() {
 
     let part = context.part(1 << 20);
     let values = part.array("values", &start).unwrap().whole();
-    let bound = part.bind(&part.pipeline(&DOUBLE, Precision::F32).unwrap(), vec![values.binding()]).unwrap();
+    let bound = part.bind(&DOUBLE, Precision::F32, &[values.named("values")]).unwrap();
     let mut list = part.record();
     list.count_for(Some(0));
     list.dispatch(&bound, start.len(), 1).unwrap();

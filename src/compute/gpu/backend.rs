@@ -13,7 +13,7 @@ use super::linear::Linear;
 use super::linear::pack::Packed;
 use super::linear::parts::Part;
 use super::scratch::{CONTACT_ANSWER, CONTACT_TRIAL};
-use super::shader_sources::Precision;
+use super::source::Precision;
 use crate::compute::call::not_asked;
 use crate::compute::cpu::Cpu;
 use crate::compute::handle::{at, at_contact};

@@ -17,7 +17,7 @@ use super::pipelines::Recorder;
 use super::pools::PoolBytes;
 use super::resident::{Connectivity, HISTORY, Resident, STATE, Sizes};
 use super::scratch::{CONTACT_ANSWER, Dimensions, Kernels, Scratch};
-use super::shader_sources::Precision;
+use super::source::Precision;
 use super::tangents::Tangents;
 use crate::compute::gather::GatherPlan;
 use crate::compute::linear::SideReport;

@@ -1,6 +1,7 @@
 //! Material points on the device: the parameters of many materials, and the return mapping at every
 //! point of every case.
 
+use super::arguments::args;
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
@@ -136,7 +137,6 @@ impl<R: DeviceReal> ReturnMapping<R> {
     /// [`GpuError::NoDoublePrecision`], [`GpuError::TooLarge`], [`GpuError::OutOfBudget`], or the
     /// device's fault.
     pub fn new(context: &GpuContext, materials: &[Material<R>], points: usize) -> Result<Self, GpuError> {
-        let pipeline = context.pipeline(&RETURN_MAPPING, R::PRECISION)?;
         let cases = materials.len();
         let (parameters, table) = flatten(materials);
         let parameters = context.array("material parameters", &parameters)?;
@@ -150,18 +150,18 @@ impl<R: DeviceReal> ReturnMapping<R> {
         let status = context.zeros("point status", cases * points)?.each(cases);
         let active = context.zeros("active cases", cases)?;
         let dimensions = context.block("dimensions")?;
-        let arguments = vec![
-            dimensions.binding(),
-            active.binding(),
-            relative.binding(),
-            committed.binding(),
-            answer.binding(),
-            tangent.binding(),
-            status.binding(),
-            parameters.binding(),
-            table.binding(),
-        ];
-        let bound = context.bind(&pipeline, arguments)?;
+        let arguments = args! {
+            dimensions,
+            active_cases: active,
+            relative_gradient: relative,
+            committed,
+            answer,
+            tangent,
+            point_status: status,
+            material_parameters: parameters,
+            hardening_table: table,
+        };
+        let bound = context.bind(&RETURN_MAPPING, R::PRECISION, &arguments)?;
         Ok(Self { cases, points, relative, committed, answer, tangent, status, active, dimensions, bound })
     }
 

@@ -4,7 +4,8 @@
 //! [`adapters`] chooses one whose limits meet the [`needs`] of the kernels, [`trial`] measures
 //! whether it is worth it, and [`drivers`] looks for the reason where there is none. [`context`]
 //! opens a device, [`buffers`] holds typed arrays on it within a memory budget, [`shader_sources`]
-//! lists the WGSL of every kernel, [`pipelines`] compiles and dispatches it,
+//! lists the WGSL of every kernel, [`reflect`] reads there which arguments it takes, [`pipelines`]
+//! compiles it, binds [`arguments`] by name and dispatches it,
 //! [`validate`](mod@validate) says where a source does not compile, [`profile`] sums the times of
 //! dispatches and [`moves`] their bytes, where that is asked for.
 //!
@@ -18,6 +19,7 @@
 //! nothing is read back without both having been asked.
 
 pub mod adapters;
+pub mod arguments;
 pub mod backend;
 pub mod batch;
 pub mod block_plan;
@@ -28,6 +30,8 @@ pub mod drivers;
 pub mod error;
 pub mod health;
 pub mod iterate;
+pub mod kernel;
+pub mod kernels;
 pub mod linear;
 pub mod material;
 pub mod memory;
@@ -39,11 +43,13 @@ mod pace;
 pub mod pipelines;
 mod pools;
 pub mod profile;
+pub mod reflect;
 mod replace;
 pub mod report;
 pub mod resident;
 pub mod scratch;
 pub mod shader_sources;
+pub mod source;
 pub mod tangents;
 pub mod trial;
 pub mod validate;
@@ -54,6 +60,7 @@ pub use batch::Evaluation;
 pub use buffers::{Chunk, DeviceReal, StorageBuffer};
 pub use context::GpuContext;
 pub use error::GpuError;
+pub use kernel::Kernel;
 pub use mixed::Mixed;
 pub use profile::{KernelTime, KernelTimes};
-pub use shader_sources::{Kernel, Precision};
+pub use source::Precision;

@@ -9,10 +9,12 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
+use super::arguments::Array;
+use super::compiled::Pipeline;
 use super::context::{GpuContext, PATIENCE};
 use super::error::GpuError;
-use super::moves::{Array, Use, bytes, uses};
-use super::shader_sources::{Kernel, Precision};
+use super::moves::bytes;
+use super::source::Precision;
 
 /// Dispatches whose timestamps a set holds.
 const DISPATCHES: usize = wgpu::QUERY_SET_MAX_QUERIES as usize / 2;
@@ -76,7 +78,6 @@ pub(super) struct Profile {
     /// Seconds of a tick.
     period: f64,
     sums: Mutex<Sums>,
-    uses: Mutex<BTreeMap<&'static str, Option<Arc<[Use]>>>>,
     free: Mutex<Vec<Set>>,
 }
 
@@ -99,14 +100,17 @@ struct Set {
 /// A bound kernel as a profile knows it.
 #[derive(Debug)]
 pub(super) struct Moved {
-    kernel: (&'static str, Precision),
-    uses: Option<Arc<[Use]>>,
+    pipeline: Arc<Pipeline>,
     arrays: Vec<Array>,
 }
 
 impl Moved {
+    fn kernel(&self) -> (&'static str, Precision) {
+        (self.pipeline.kernel.name, self.pipeline.precision)
+    }
+
     fn bytes(&self, slots: usize, vectors: usize) -> Option<u64> {
-        self.uses.as_ref().map(|uses| bytes(self.kernel.0, uses, &self.arrays, slots, vectors))
+        bytes(self.pipeline.kernel, &self.arrays, slots, vectors)
     }
 }
 
@@ -122,11 +126,6 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Profile {
-    /// How a kernel uses its arguments, found once.
-    fn uses(&self, kernel: &'static Kernel) -> Option<Arc<[Use]>> {
-        lock(&self.uses).entry(kernel.name).or_insert_with(|| uses(kernel).map(Into::into)).clone()
-    }
-
     /// Adds what a list dispatched, when it is sent.
     fn sent(&self, stamps: &Stamps) {
         let mut sums = lock(&self.sums);
@@ -212,9 +211,8 @@ impl GpuContext {
     }
 
     /// What is to be known of a kernel that is bound to `arrays`; nothing without a profile.
-    pub(super) fn moved(&self, kernel: &'static Kernel, precision: Precision, arrays: Vec<Array>) -> Option<Moved> {
-        let profiling = self.profiling.as_ref()?;
-        Some(Moved { kernel: (kernel.name, precision), uses: profiling.profile.uses(kernel), arrays })
+    pub(super) fn moved(&self, pipeline: &Arc<Pipeline>, arrays: Vec<Array>) -> Option<Moved> {
+        self.is_profiled().then(|| Moved { pipeline: Arc::clone(pipeline), arrays })
     }
 
     /// Adds the bytes that a kernel has moved for `slots` whose Krylov bases have so many vectors,
@@ -222,7 +220,7 @@ impl GpuContext {
     pub(super) fn credit(&self, moved: Option<&Moved>, slots: usize, vectors: usize) {
         if let (Some(profiling), Some(moved)) = (&self.profiling, moved) {
             let mut sums = lock(&profiling.profile.sums);
-            add(&mut sums.kernels.entry(moved.kernel).or_default().bytes, moved.bytes(slots, vectors));
+            add(&mut sums.kernels.entry(moved.kernel()).or_default().bytes, moved.bytes(slots, vectors));
         }
     }
 
@@ -252,7 +250,7 @@ impl GpuContext {
                 None => self.set_of_queries()?,
             });
         }
-        stamps.dispatches.push((moved.kernel, moved.bytes(slots, 0)));
+        stamps.dispatches.push((moved.kernel(), moved.bytes(slots, 0)));
         let first = 2 * (at % DISPATCHES) as u32;
         Ok(stamps.sets.last().map(|set| wgpu::ComputePassTimestampWrites {
             query_set: &set.queries,

@@ -8,7 +8,7 @@ use super::backend::Gpu;
 use super::batch::Evaluation;
 use super::buffers::DeviceReal;
 use super::context::GpuContext;
-use super::shader_sources::Precision;
+use super::source::Precision;
 use crate::bounded;
 use crate::compute::cpu::Cpu;
 use crate::compute::{Call, CaseModel, Compute, ComputeError};

@@ -1,14 +1,14 @@
 //! The arrays of Newton's iterates, and the kernels that are bound to them.
 
+use super::super::arguments::{Argument, args};
 use super::super::buffers::{DeviceReal, StorageBuffer};
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
+use super::super::kernel::Kernel;
 use super::super::linear::{Linear, POINT_ROWS, Record};
-use super::super::moves::Argument;
 use super::super::pipelines::Bound;
 use super::super::resident::{Connectivity, Resident, Sizes};
 use super::super::scratch::Scratch;
-use super::super::shader_sources::Kernel;
 use super::sources;
 use crate::compute::CaseModel;
 use crate::compute::iterate::{missing_weight, prescribed};
@@ -245,98 +245,97 @@ impl Kernels {
         (kept, told): (&Kept<R>, &Told<R>),
     ) -> Result<Self, GpuError> {
         let solver = linear.of_iterates();
-        let told_alone = [scratch.dimensions.binding(), scratch.active.binding(), told.marks.binding(), told.numbers.binding()];
-        let shape = [&told_alone[..], &[told.depth_changes.binding()]].concat();
-        let residual = [
-            resident.committed.binding(),
-            kept.node_info.binding(),
-            resident.weight.binding(),
-            kept.increments.binding(),
-            kept.forces.binding(),
-            kept.rows.binding(),
-            kept.codes.binding(),
-        ];
-        let bind = |kernel: &'static Kernel, parts: &[&[Argument<'_>]]| {
-            let pipeline = context.pipeline(kernel, R::PRECISION)?;
-            context.bind(&pipeline, [&shape[..], &parts.concat()].concat())
+        let told_alone = args! {
+            dimensions: scratch.dimensions,
+            active_cases: scratch.active,
+            marks: told.marks,
+            numbers: told.numbers,
         };
-        let place = [
-            resident.committed.binding(),
-            kept.before.binding(),
-            kept.correction.binding(),
-            kept.node_info.binding(),
-            resident.gap.binding(),
-            kept.increments.binding(),
-            scratch.increment.binding(),
-        ];
-        let contact = [
-            mesh.contact_node.binding(),
-            resident.weight.binding(),
-            mesh.on_symmetry_plane.binding(),
-            resident.friction.binding(),
-            kept.slides.binding(),
-            resident.gap.binding(),
-            kept.increments.binding(),
-            kept.forces.binding(),
-            kept.rows.binding(),
-            kept.codes.binding(),
-        ];
-        let measure = [kept.correction.binding(), kept.plate_weight.binding(), told.partial_sums.binding()];
-        let read = [
-            kept.plate.binding(),
-            mesh.contact_node.binding(),
-            kept.forces.binding(),
-            kept.rows.binding(),
-            kept.codes.binding(),
-            kept.slides.binding(),
-            kept.came_off.binding(),
-            told.partial_sums.binding(),
-            kept.largest.binding(),
-            told.readings.binding(),
-            told.counts.binding(),
-        ];
-        let system = [kept.largest.binding(), solver.rhs.binding(), solver.fixed.binding(), solver.rows.binding()];
-        let expand = [kept.largest.binding(), solver.answer.binding(), kept.correction.binding(), kept.by_residual.binding()];
-        let unit = [
-            kept.node_info.binding(),
-            solver.fixed.binding(),
-            kept.response.binding(),
-            solver.rhs.binding(),
-            solver.guess.binding(),
-        ];
-        let respond = [solver.answer.binding(), solver.rhs.binding(), solver.fixed.binding(), kept.response.binding()];
-        let press = [kept.response.binding(), kept.by_residual.binding(), kept.correction.binding()];
-        let depth = [told.corrections.binding(), told.units.binding(), told.depth_changes.binding()];
-        let depth_kernel = context.pipeline(&sources::DEPTH, R::PRECISION)?;
-        let commit = [
-            kept.node_info.binding(),
-            kept.height.binding(),
-            kept.increments.binding(),
-            kept.forces.binding(),
-            kept.rows.binding(),
-            kept.codes.binding(),
-            resident.committed.binding(),
-            kept.before.binding(),
-            resident.gap.binding(),
-            told.at_points.binding(),
-            told.status.binding(),
-        ];
+        let depth_changes = args! { depth_changes: told.depth_changes };
+        let trial = args! { increments: kept.increments, forces: kept.forces, rows: kept.rows, codes: kept.codes };
+        let residual = args! { committed: resident.committed, node_info: kept.node_info, weight: resident.weight };
+        let bind = |kernel: &'static Kernel, parts: &[&[Argument<'_>]]| {
+            context.bind(kernel, R::PRECISION, &[&told_alone[..], &depth_changes, &parts.concat()].concat())
+        };
+        let place = args! {
+            committed: resident.committed,
+            before: kept.before,
+            correction: kept.correction,
+            node_info: kept.node_info,
+            gap_at_start: resident.gap,
+            increments: kept.increments,
+            increment: scratch.increment,
+        };
+        let contact = args! {
+            contact_node: mesh.contact_node,
+            weight: resident.weight,
+            on_symmetry_plane: mesh.on_symmetry_plane,
+            friction: resident.friction,
+            slides: kept.slides,
+            gap_at_start: resident.gap,
+        };
+        let measure = args! {
+            correction: kept.correction,
+            plate_weight: kept.plate_weight,
+            partial_sums: told.partial_sums,
+        };
+        let read = args! {
+            plate: kept.plate,
+            contact_node: mesh.contact_node,
+            forces: kept.forces,
+            rows: kept.rows,
+            codes: kept.codes,
+            slides: kept.slides,
+            came_off: kept.came_off,
+            partial_sums: told.partial_sums,
+            largest: kept.largest,
+            readings: told.readings,
+            counts: told.counts,
+        };
+        let system = args! { largest: kept.largest, rhs: solver.rhs, is_fixed: solver.fixed, sliding: solver.rows };
+        let expand = args! {
+            largest: kept.largest,
+            answer: solver.answer,
+            correction: kept.correction,
+            by_residual: kept.by_residual,
+        };
+        let unit = args! {
+            node_info: kept.node_info,
+            is_fixed: solver.fixed,
+            response: kept.response,
+            rhs: solver.rhs,
+            guess: solver.guess,
+        };
+        let respond = args! { answer: solver.answer, rhs: solver.rhs, is_fixed: solver.fixed, response: kept.response };
+        let press = args! { response: kept.response, by_residual: kept.by_residual, correction: kept.correction };
+        let depth = args! { corrections: told.corrections, units: told.units };
+        let land = args! { codes: kept.codes, slides: kept.slides, came_off: kept.came_off };
+        let commit = args! {
+            node_info: kept.node_info,
+            height: kept.height,
+            committed: resident.committed,
+            before: kept.before,
+            gap_at_start: resident.gap,
+            at_points: told.at_points,
+            status: told.status,
+        };
+        let energies = args! { energies: scratch.energies, totals: told.energies };
         Ok(Self {
             place: bind(&sources::PLACE, &[&place])?,
-            current: bind(&sources::CURRENT, &[&[kept.increments.binding(), scratch.increment.binding()]])?,
-            save: bind(&sources::SAVE, &[&[scratch.force.binding(), kept.forces.binding()]])?,
-            contact: bind(&sources::CONTACT, &[&contact])?,
-            measure: bind(&sources::MEASURE, &[&residual, &measure])?,
+            current: bind(&sources::CURRENT, &[&args! { increments: kept.increments, increment: scratch.increment }])?,
+            save: bind(&sources::SAVE, &[&args! { force: scratch.force, forces: kept.forces }])?,
+            contact: bind(&sources::CONTACT, &[&trial, &contact])?,
+            measure: bind(&sources::MEASURE, &[&trial, &residual, &measure])?,
             read: bind(&sources::READ, &[&read])?,
-            system: bind(&sources::SYSTEM, &[&residual, &system])?,
-            expand: bind(&sources::EXPAND, &[&residual, &expand])?,
+            system: bind(&sources::SYSTEM, &[&trial, &residual, &system])?,
+            expand: bind(&sources::EXPAND, &[&trial, &residual, &expand])?,
             unit: bind(&sources::UNIT, &[&unit])?,
             respond: bind(&sources::RESPOND, &[&respond])?,
-            depth: context.bind(&depth_kernel, [&told_alone[..], &depth].concat())?,
+            depth: bind(&sources::DEPTH, &[&depth])?,
             press: bind(&sources::PRESS, &[&press])?,
-            land: bind(&sources::LAND, &[&[kept.codes.binding(), kept.slides.binding(), kept.came_off.binding()]])?,
-            commit: bind(&sources::COMMIT, &[&commit])?,
-            energies: bind(&sources::ENERGIES, &[&[scratch.energies.binding(), told.energies.binding()]])?,
+            land: bind(&sources::LAND, &[&land])?,
+            commit: bind(&sources::COMMIT, &[&trial, &commit])?,
+            energies: bind(&sources::ENERGIES, &[&energies])?,
         })
     }
 }

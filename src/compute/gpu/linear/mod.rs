@@ -16,10 +16,10 @@ pub mod pack;
 pub mod parts;
 pub mod sources;
 
+use super::arguments::{Argument, args};
 use super::buffers::{DeviceReal, Read, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
-use super::moves::Argument;
 use super::pipelines::Recorder;
 use super::pools::Pools;
 use crate::compute::linear::{Ended, SideReport};
@@ -223,57 +223,54 @@ impl Linear {
         let squares = context.zeros("partial squares", slots * chunks)?;
         let small = context.zeros("least-squares problems", slots * small_numbers())?;
 
-        let assemble = context.pipeline(&ASSEMBLE, T::PRECISION)?;
-        let arguments = vec![
-            level.block.binding(),
-            source.binding(),
-            level.diagonal.binding(),
-            point_of.binding(),
-            blocks.binding(),
-            rows.binding(),
-            level.matrix.binding(),
-            counts.binding(),
-        ];
-        let assemble = Call::of(context.bind(&assemble, arguments)?, finest.blocks() / 2);
-        let call = |kernel, threads, arguments: Vec<Argument<'_>>| {
-            Call::new(context, kernel, threads, [vec![level.block.binding()], arguments].concat())
+        let arguments = args! {
+            level: level.block,
+            source,
+            diagonal: level.diagonal,
+            point_of,
+            blocks,
+            rows,
+            matrix: level.matrix,
+            counts,
         };
-        let with_product = |kernel, threads, x, arguments: Vec<Argument<'_>>| {
-            Call::new(context, kernel, threads, [level.product(x), arguments].concat())
+        let assemble = Call::of(context.bind(&ASSEMBLE, T::PRECISION, &arguments)?, finest.blocks() / 2);
+        let call = |kernel, threads, arguments: &[Argument<'_>]| {
+            Call::new(context, kernel, threads, &[&args! { level: level.block }, arguments].concat())
         };
-        let (r, w) = (records.binding(), &level.b);
+        let with_product = |kernel, threads, x, arguments: &[Argument<'_>]| {
+            Call::new(context, kernel, threads, &[&level.product(x), arguments].concat())
+        };
+        let w = &level.b;
         let by_rows = row_threads(finest.nodes);
-        let dots = || call(&KRYLOV_DOTS, chunks * SUMMING, vec![r.clone(), basis.binding(), w.binding(), sums.binding()]);
+        let dots = || call(&KRYLOV_DOTS, chunks * SUMMING, &args! { records, basis, w, partial_sums: sums });
         let orthogonalise = || {
-            let arguments = vec![r.clone(), basis.binding(), sums.binding(), w.binding(), small.binding(), squares.binding()];
-            call(&KRYLOV_ORTHOGONALISE, chunks * SUMMING, arguments)
+            let arguments = args! { records, basis, partial_sums: sums, w, small, squares };
+            call(&KRYLOV_ORTHOGONALISE, chunks * SUMMING, &arguments)
         };
-        let normalise = || call(&KRYLOV_NORMALISE, unknowns, vec![r.clone(), w.binding(), basis.binding()]);
-        let residual = vec![rhs.binding(), level.fixed.binding(), w.binding(), r.clone()];
-        let product = vec![level.fixed.binding(), r.clone(), w.binding(), preconditioned.binding()];
-        let combine = vec![r.clone(), small.binding(), preconditioned.binding(), solution.binding(), answer.binding()];
+        let normalise = || call(&KRYLOV_NORMALISE, unknowns, &args! { records, w, basis });
         // Twice is enough (Giraud, Langou & Rozloznik, Comput. Math. Appl. 50, 2005).
+        let product = args! { is_fixed: level.fixed, records, w, preconditioned };
         let iteration = vec![
-            with_product(&KRYLOV_PRODUCT, by_rows, &level.x, product)?,
+            with_product(&KRYLOV_PRODUCT, by_rows, &level.x, &product)?,
             dots()?,
             orthogonalise()?,
             dots()?,
             orthogonalise()?,
-            call(&KRYLOV_ADVANCE, 1, vec![r.clone(), squares.binding(), small.binding()])?,
+            call(&KRYLOV_ADVANCE, 1, &args! { records, squares, small })?,
         ];
         let next = normalise()?;
         let kernels = levels.cycle.iter().chain(&iteration).chain([&next]);
         let running = Running::new(context, kernels.map(Call::groups), &level.block, &records)?;
         let finish = vec![
-            call(&KRYLOV_LEAST_SQUARES, 1, vec![r.clone(), small.binding()])?,
-            call(&KRYLOV_COMBINE, unknowns, combine)?,
-            with_product(&PLATE_FORCE, 1, &answer, vec![plate.binding(), r.clone()])?,
+            call(&KRYLOV_LEAST_SQUARES, 1, &args! { records, small })?,
+            call(&KRYLOV_COMBINE, unknowns, &args! { records, small, preconditioned, solution, answer })?,
+            with_product(&PLATE_FORCE, 1, &answer, &args! { plate, records })?,
         ];
-        let begin = vec![call(&KRYLOV_BEGIN, 1, vec![r.clone(), sums.binding(), small.binding()])?, normalise()?];
-        let prescribe = vec![rhs.binding(), level.fixed.binding(), solution.binding()];
-        let prescribe = call(&PRESCRIBE, by_rows, prescribe)?;
-        let measure = call(&KRYLOV_MEASURE, 1, vec![r.clone(), sums.binding()])?;
-        let residual = vec![with_product(&RESIDUAL, by_rows, &solution, residual)?, dots()?];
+        let begin = vec![call(&KRYLOV_BEGIN, 1, &args! { records, partial_sums: sums, small })?, normalise()?];
+        let prescribe = call(&PRESCRIBE, by_rows, &args! { rhs, is_fixed: level.fixed, solution })?;
+        let measure = call(&KRYLOV_MEASURE, 1, &args! { records, partial_sums: sums })?;
+        let residual = args! { b: rhs, is_fixed: level.fixed, r: w, records };
+        let residual = vec![with_product(&RESIDUAL, by_rows, &solution, &residual)?, dots()?];
         Ok(Self {
             assemble,
             prescribe,
