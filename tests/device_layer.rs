@@ -10,6 +10,7 @@ use asperity::internals::compute::Compute;
 use asperity::internals::compute::gpu::adapters::adapters;
 use asperity::internals::compute::gpu::arguments::Argument;
 use asperity::internals::compute::gpu::error::ArgumentFlaw;
+use asperity::internals::compute::gpu::layout;
 use asperity::internals::compute::gpu::linear::parts::Part;
 use asperity::internals::compute::gpu::material::{self, Answers};
 use asperity::internals::compute::gpu::report::{Surroundings, report};
@@ -199,18 +200,18 @@ fn chunks_give_the_same_bits_as_one_piece() {
     let points = 1000;
     let materials: Vec<_> = (1..=40).map(|i| material(1e-3 * f64::from(i))).collect();
     let value = |i: usize| ((i * 7919) % 1009) as f32 * 2e-5 - 1e-2;
-    let relative: Vec<f32> = (0..materials.len() * material::RELATIVE * points).map(value).collect();
-    let committed = vec![0.0f32; materials.len() * material::STATE * points];
+    let relative: Vec<f32> = (0..materials.len() * layout::RELATIVE * points).map(value).collect();
+    let committed = vec![0.0f32; materials.len() * layout::STATE * points];
     // 20 MB in all, in 4 MiB
     assert!(material::ReturnMapping::new(&context, &materials, points).is_err());
     let chunked = material::return_mapping(&context, &materials, points, &relative, &committed).unwrap();
     for case in [0, 17, 39] {
         let part = |data: &[f32], components: usize| data[case * components * points..][..components * points].to_vec();
-        let (relative, committed) = (part(&relative, material::RELATIVE), part(&committed, material::STATE));
+        let (relative, committed) = (part(&relative, layout::RELATIVE), part(&committed, layout::STATE));
         let alone = material::return_mapping(&context, &materials[case..=case], points, &relative, &committed).unwrap();
         let expected = Answers {
-            answer: part(&chunked.answer, material::ANSWER),
-            tangent: part(&chunked.tangent, material::TANGENT),
+            answer: part(&chunked.answer, layout::ANSWER),
+            tangent: part(&chunked.tangent, layout::TANGENT),
             status: chunked.status[case * points..][..points].to_vec(),
         };
         assert!(alone == expected, "case {case}");
@@ -248,8 +249,8 @@ fn bounds_checks_do_not_change_a_bit() {
         [Hardening::power(1e-3, 0.1, 0.3), Hardening::hollomon(0.01, 5.0, 1.0), Hardening::table(&[[0.0, 1e-3], [0.01, 2e-3]])];
     let materials = laws.map(|law| Material::<f32> { elasticity: Elasticity::new(1.0, 0.3), hardening: law.unwrap() });
     let points = 100;
-    let relative: Vec<f32> = (0..3 * material::RELATIVE * points).map(|i| ((i * 7919) % 1009) as f32 * 2e-5 - 1e-2).collect();
-    let committed = vec![0.0f32; 3 * material::STATE * points];
+    let relative: Vec<f32> = (0..3 * layout::RELATIVE * points).map(|i| ((i * 7919) % 1009) as f32 * 2e-5 - 1e-2).collect();
+    let committed = vec![0.0f32; 3 * layout::STATE * points];
     let map = |context: &GpuContext| material::return_mapping(context, &materials, points, &relative, &committed).unwrap();
     let context = context.with_checks(true);
     let checked = map(&context);
@@ -262,11 +263,11 @@ fn only_the_active_cases_are_touched() {
     let Some(context) = device("device_layer", Precision::F32) else { return };
     let material = Material::<f32> { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::ideal(1e-3).unwrap() };
     let kernel = material::ReturnMapping::new(&context, &vec![material; 3], 2).unwrap();
-    let committed = [0.0f32; 3 * 2 * material::STATE];
-    let relative = |size: f32| (0..3 * 2 * material::RELATIVE).map(|i| size * (i % 7) as f32).collect::<Vec<_>>();
+    let committed = [0.0f32; 3 * 2 * layout::STATE];
+    let relative = |size: f32| (0..3 * 2 * layout::RELATIVE).map(|i| size * (i % 7) as f32).collect::<Vec<_>>();
     let first = kernel.run(&context, &[0, 1, 2], &relative(1e-4), &committed).unwrap();
     let second = kernel.run(&context, &[2, 0], &relative(2e-4), &committed).unwrap();
-    let case = |a: &Answers<f32>, c: usize| a.answer[c * 2 * material::ANSWER..][..2 * material::ANSWER].to_vec();
+    let case = |a: &Answers<f32>, c: usize| a.answer[c * 2 * layout::ANSWER..][..2 * layout::ANSWER].to_vec();
     assert_eq!(case(&first, 1), case(&second, 1));
     assert!(case(&first, 0) != case(&second, 0) && case(&first, 2) != case(&second, 2));
     assert!(matches!(kernel.run(&context, &[3], &relative(0.0), &committed), Err(GpuError::Length { .. })));

@@ -35,6 +35,6 @@ fn iterate_contact(@builtin(global_invocation_id) id: vec3<u32>) {
         coefficient = 0.0;
     }
     let found = contact_rows(coefficient, point);
-    store_rows(iterate_place_of(case_index, trial, 21u * points) + id.x, found);
+    store_rows(iterate_place_of(case_index, trial, ROWS * points) + id.x, found);
     codes[iterate_place_of(case_index, trial, points) + id.x] = status_code(found);
 }

@@ -4,7 +4,6 @@ use super::arguments::{Argument, Array, Extent};
 use super::context::{GpuContext, PATIENCE};
 use super::error::GpuError;
 use super::memory::{Reservation, Staging};
-use super::pools::ALIGNMENT;
 use super::source::Precision;
 use crate::real::Real;
 use bytemuck::{Pod, cast_slice};
@@ -17,6 +16,9 @@ const UPLOAD_PIECE: usize = 32 << 20;
 /// Bytes behind the numbers in the staging buffer: the ticket, and padding to the alignment of
 /// mappings.
 const TICKET_BYTES: u64 = 16;
+
+/// A binding may begin at any multiple of this: Vulkan lets no driver ask for more.
+pub const ALIGNMENT: u64 = 256;
 
 /// A precision in which kernels run.
 pub trait DeviceReal: Real + Pod {

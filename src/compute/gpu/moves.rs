@@ -7,6 +7,7 @@
 
 use super::arguments::Array;
 use super::kernel::Kernel;
+use super::layout::HISTORY;
 use super::reflect::Variable;
 
 /// What is not seen from a kernel's bindings.
@@ -27,7 +28,7 @@ enum But {
 /// Kernels, their arguments, and what there is to know of these.
 const BUT: &[(&str, &[&str], But)] = &[
     // The largest alpha alone.
-    ("hex8_energies", &["next_history"], But::OneOf(super::resident::HISTORY as u64)),
+    ("hex8_energies", &["next_history"], But::OneOf(HISTORY as u64)),
     // Of elements with corners that hang.
     ("gather_node_force", &["element_nodes"], But::Left),
     // The committed state, and not its last flow.

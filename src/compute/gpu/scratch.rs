@@ -5,21 +5,13 @@ use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
 use super::kernel::Kernel;
+use super::layout::{HISTORY, ROWS, STRESS, TRIAL};
 use super::pipelines::Bound;
 use super::pools::{PoolBytes, Pools};
-use super::resident::{Connectivity, HISTORY, Resident, Sizes};
+use super::resident::{Connectivity, Resident, Sizes};
 use super::shader_sources::{
     CONTACT_POINTS, GATHER_NODE_FORCE, HEX8_BEGIN_STEP, HEX8_ENERGIES, HEX8_INTERNAL_FORCE, HEX8_JACOBIAN, HEX8_UPDATE,
 };
-
-/// Numbers of an element's tangent in `tangent.wgsl`.
-pub const ELEMENT_BLOCKS: usize = 9 * crate::element::hex8::PAIRS;
-/// Components of the stresses that a force is gathered from.
-pub const STRESS: usize = 9;
-/// Numbers that go to a contact point: force, increment.
-pub const CONTACT_TRIAL: usize = 6;
-/// Numbers that come from it: residual, force rows, displacement rows.
-pub const CONTACT_ANSWER: usize = 21;
 
 /// The block that `batch.wgsl` calls Dimensions.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -51,8 +43,8 @@ pub struct Scratch<R> {
     pub(super) point_work: StorageBuffer<R>,
     pub energies: StorageBuffer<R>,
     pub(super) contact_trial: StorageBuffer<R>,
-    pub(super) contact_answer: StorageBuffer<R>,
-    pub(super) contact_status: StorageBuffer<u32>,
+    pub(super) contact_rows: StorageBuffer<R>,
+    pub(super) contact_codes: StorageBuffer<u32>,
 }
 
 impl<R: DeviceReal> Scratch<R> {
@@ -72,9 +64,9 @@ impl<R: DeviceReal> Scratch<R> {
             pools,
             point_work: zeros("energies of points", 2 * points)?,
             energies: zeros("energies of elements", 3 * sizes.elements)?,
-            contact_trial: zeros("contact points", CONTACT_TRIAL * sizes.contact_points)?,
-            contact_answer: zeros("contact rows", CONTACT_ANSWER * sizes.contact_points)?,
-            contact_status: context.zeros("contact status", slots * sizes.contact_points)?.each(slots),
+            contact_trial: zeros("contact points", TRIAL * sizes.contact_points)?,
+            contact_rows: zeros("contact rows", ROWS * sizes.contact_points)?,
+            contact_codes: context.zeros("contact status", slots * sizes.contact_points)?.each(slots),
         })
     }
 
@@ -82,7 +74,7 @@ impl<R: DeviceReal> Scratch<R> {
     pub fn bytes(sizes: Sizes) -> u64 {
         let points = sizes.points();
         let all = (1 + 2) * points + 6 * sizes.nodes + 3 * sizes.elements;
-        let contact = (CONTACT_TRIAL + CONTACT_ANSWER + 1) * sizes.contact_points;
+        let contact = (TRIAL + ROWS + 1) * sizes.contact_points;
         ((all + contact + 16) * size_of::<R>()) as u64
     }
 }
@@ -129,8 +121,8 @@ impl Kernels {
             friction: r.friction,
             gap_at_start: r.gap,
             trial: s.contact_trial,
-            rows: s.contact_answer,
-            codes: s.contact_status,
+            rows: s.contact_rows,
+            codes: s.contact_codes,
         };
         Ok(Self {
             jacobian: bind(&HEX8_JACOBIAN, &[&shape, &element, &args! { jacobian: s.jacobian }])?,

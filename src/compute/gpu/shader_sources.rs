@@ -35,7 +35,7 @@ pub const PLANE: Source = source!("contact/plane.wgsl");
 pub const COULOMB: Source = source!("contact/coulomb.wgsl");
 
 /// How they are stored.
-pub const ANSWER: Source = source!("contact/answer.wgsl");
+pub const ROWS: Source = source!("contact/rows.wgsl");
 
 /// The return mapping at every point of every active case; driven by [`super::material`].
 pub static RETURN_MAPPING: Kernel =
@@ -87,4 +87,4 @@ pub static GATHER_TANGENT_BLOCKS: Kernel =
 
 /// The contact conditions of every point.
 pub static CONTACT_POINTS: Kernel =
-    Kernel::new("contact_points", &[BATCH, PLANE, COULOMB, ANSWER, source!("contact/contact_points.wgsl")]);
+    Kernel::new("contact_points", &[BATCH, PLANE, COULOMB, ROWS, source!("contact/contact_points.wgsl")]);

@@ -3,15 +3,14 @@
 //! solver rounds it to single precision in any case.
 
 use super::arguments::args;
-use super::batch::Dispatch;
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
+use super::dispatch::Dispatch;
 use super::error::GpuError;
+use super::layout::{COORDINATES, ELEMENT_BLOCKS, STATE};
 use super::pipelines::{Bound, Recorder};
-use super::resident::{
-    COORDINATES, Connectivity, MATERIAL_ROOM, Resident, STATE, Sizes, replace_materials, send_materials, write_geometry,
-};
-use super::scratch::{ELEMENT_BLOCKS, Scratch};
+use super::resident::{Connectivity, MATERIAL_ROOM, Resident, Sizes, replace_materials, send_materials, write_geometry};
+use super::scratch::Scratch;
 use super::shader_sources::{GATHER_TANGENT_BLOCKS, HEX8_JACOBIAN, HEX8_TANGENT, NARROW};
 use crate::compute::{CaseModel, ComputeError};
 use crate::mesh::Mesh;

@@ -5,9 +5,9 @@
 //! to machine. A batch gains more from a device than one case does.
 
 use super::backend::Gpu;
-use super::batch::Evaluation;
 use super::buffers::DeviceReal;
 use super::context::GpuContext;
+use super::dispatch::Evaluation;
 use super::source::Precision;
 use crate::bounded;
 use crate::compute::cpu::Cpu;

@@ -1,15 +1,12 @@
-//! The arrays of Newton's iterates, and the kernels that are bound to them.
+//! The arrays of Newton's iterates.
 
-use super::super::arguments::{Argument, args};
 use super::super::buffers::{DeviceReal, StorageBuffer};
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
-use super::super::kernel::Kernel;
-use super::super::linear::{Linear, POINT_ROWS, Record};
-use super::super::pipelines::Bound;
-use super::super::resident::{Connectivity, Resident, Sizes};
-use super::super::scratch::Scratch;
-use super::sources;
+use super::super::layout::{AT_POINT, ROWS};
+use super::super::linear::records::Record;
+use super::super::linear::sizes::THREADS;
+use super::super::resident::{Resident, Sizes};
 use crate::compute::CaseModel;
 use crate::compute::iterate::{missing_weight, prescribed};
 use crate::mesh::Mesh;
@@ -19,17 +16,11 @@ pub const NUMBERS: usize = 9;
 /// Numbers that come back, as `read.wgsl` orders them.
 pub const READINGS: usize = 10;
 /// Partial sums of `parts.wgsl`.
-const PARTS: usize = 4;
-/// Threads of the kernels that sum over nodes.
-const SUMMING: usize = 256;
-/// Components of a contact point's rows: residual, force rows, displacement rows.
-const ROWS: usize = POINT_ROWS + 2;
-/// Numbers of a contact point that are recorded: displacement, force.
-pub const AT_POINT: usize = 6;
+pub(in super::super) const PARTS: usize = 4;
 
 /// `node_info.wgsl`.
-const IS_PLATE: u32 = 8;
-const FIRST_POINT: u32 = 16;
+pub(in super::super) const IS_PLATE: u32 = 8;
+pub(in super::super) const FIRST_POINT: u32 = 16;
 
 /// What stays on the device of each case of a group.
 #[derive(Debug)]
@@ -40,21 +31,21 @@ pub struct Kept<R> {
     pub forces: StorageBuffer<R>,
     /// `[case][3 node + i]`.
     pub correction: StorageBuffer<R>,
-    by_residual: StorageBuffer<R>,
+    pub(super) by_residual: StorageBuffer<R>,
     /// Displacement one step before the committed one, `[case][3 node + i]`.
     pub before: StorageBuffer<R>,
     /// Contact points that slide without friction in this step, `[case][point]`.
     pub slides: StorageBuffer<u32>,
     /// Contact points that came off in this step, `[case][point]`.
     pub came_off: StorageBuffer<u32>,
-    rows: StorageBuffer<R>,
-    codes: StorageBuffer<u32>,
-    response: StorageBuffer<f32>,
-    largest: StorageBuffer<R>,
-    node_info: StorageBuffer<u32>,
-    plate: StorageBuffer<u32>,
-    plate_weight: StorageBuffer<R>,
-    height: StorageBuffer<R>,
+    pub(super) rows: StorageBuffer<R>,
+    pub(super) codes: StorageBuffer<u32>,
+    pub(super) response: StorageBuffer<f32>,
+    pub(super) largest: StorageBuffer<R>,
+    pub(super) node_info: StorageBuffer<u32>,
+    pub(super) plate: StorageBuffer<u32>,
+    pub(super) plate_weight: StorageBuffer<R>,
+    pub(super) height: StorageBuffer<R>,
 }
 
 impl<R: DeviceReal> Kept<R> {
@@ -170,13 +161,13 @@ pub struct Told<R> {
     pub status: StorageBuffer<u32>,
     /// `[slot][elastic, plastic, largest alpha]`.
     pub energies: StorageBuffer<R>,
-    partial_sums: StorageBuffer<R>,
+    pub(super) partial_sums: StorageBuffer<R>,
     /// `[slot]`: how the systems of corrections begin that hold a force, and how they end.
     pub corrections: StorageBuffer<Record>,
     /// `[slot]`: the same of the responses to a unit indentation.
     pub units: StorageBuffer<Record>,
     /// `[slot]`: change of h along such a correction.
-    depth_changes: StorageBuffer<R>,
+    pub(super) depth_changes: StorageBuffer<R>,
 }
 
 impl<R: DeviceReal> Told<R> {
@@ -196,7 +187,7 @@ impl<R: DeviceReal> Told<R> {
             at_points: zeros("recorded points", AT_POINT * sizes.contact_points)?.each(slots),
             status: context.zeros("recorded status", slots * sizes.contact_points)?.each(slots),
             energies: zeros("energies of bodies", 3)?,
-            partial_sums: zeros("partial sums of trials", PARTS * sizes.nodes.div_ceil(SUMMING))?,
+            partial_sums: zeros("partial sums of trials", PARTS * sizes.nodes.div_ceil(THREADS))?,
             corrections: context.zeros("solves of corrections", slots)?,
             units: context.zeros("solves of responses", slots)?,
             depth_changes: zeros("changes of h", 1)?,
@@ -205,137 +196,8 @@ impl<R: DeviceReal> Told<R> {
 
     /// Bytes of a slot.
     pub fn bytes(sizes: Sizes) -> u64 {
-        let numbers = NUMBERS + READINGS + 4 + AT_POINT * sizes.contact_points + PARTS * sizes.nodes.div_ceil(SUMMING);
+        let numbers = NUMBERS + READINGS + 4 + AT_POINT * sizes.contact_points + PARTS * sizes.nodes.div_ceil(THREADS);
         let words = 10 + sizes.contact_points;
         (size_of::<R>() * numbers + size_of::<u32>() * words + 2 * size_of::<Record>()) as u64
-    }
-}
-
-/// The kernels bound to a group of cases.
-#[derive(Debug)]
-pub struct Kernels {
-    pub(super) place: Bound,
-    pub(super) current: Bound,
-    pub(super) save: Bound,
-    pub(super) contact: Bound,
-    pub(super) measure: Bound,
-    pub(super) read: Bound,
-    pub(super) system: Bound,
-    pub(super) expand: Bound,
-    pub(super) unit: Bound,
-    pub(super) respond: Bound,
-    pub(super) depth: Bound,
-    pub(super) press: Bound,
-    pub(super) land: Bound,
-    pub(super) commit: Bound,
-    pub(super) energies: Bound,
-}
-
-impl Kernels {
-    /// Binds them.
-    ///
-    /// # Errors
-    /// What the device says.
-    pub fn new<R: DeviceReal>(
-        context: &GpuContext,
-        mesh: &Connectivity,
-        resident: &Resident<R>,
-        scratch: &Scratch<R>,
-        linear: &Linear,
-        (kept, told): (&Kept<R>, &Told<R>),
-    ) -> Result<Self, GpuError> {
-        let solver = linear.of_iterates();
-        let told_alone = args! {
-            dimensions: scratch.dimensions,
-            active_cases: scratch.active,
-            marks: told.marks,
-            numbers: told.numbers,
-        };
-        let depth_changes = args! { depth_changes: told.depth_changes };
-        let trial = args! { increments: kept.increments, forces: kept.forces, rows: kept.rows, codes: kept.codes };
-        let residual = args! { committed: resident.committed, node_info: kept.node_info, weight: resident.weight };
-        let bind = |kernel: &'static Kernel, parts: &[&[Argument<'_>]]| {
-            context.bind(kernel, R::PRECISION, &[&told_alone[..], &depth_changes, &parts.concat()].concat())
-        };
-        let place = args! {
-            committed: resident.committed,
-            before: kept.before,
-            correction: kept.correction,
-            node_info: kept.node_info,
-            gap_at_start: resident.gap,
-            increments: kept.increments,
-            increment: scratch.increment,
-        };
-        let contact = args! {
-            contact_node: mesh.contact_node,
-            weight: resident.weight,
-            on_symmetry_plane: mesh.on_symmetry_plane,
-            friction: resident.friction,
-            slides: kept.slides,
-            gap_at_start: resident.gap,
-        };
-        let measure = args! {
-            correction: kept.correction,
-            plate_weight: kept.plate_weight,
-            partial_sums: told.partial_sums,
-        };
-        let read = args! {
-            plate: kept.plate,
-            contact_node: mesh.contact_node,
-            forces: kept.forces,
-            rows: kept.rows,
-            codes: kept.codes,
-            slides: kept.slides,
-            came_off: kept.came_off,
-            partial_sums: told.partial_sums,
-            largest: kept.largest,
-            readings: told.readings,
-            counts: told.counts,
-        };
-        let system = args! { largest: kept.largest, rhs: solver.rhs, is_fixed: solver.fixed, sliding: solver.rows };
-        let expand = args! {
-            largest: kept.largest,
-            answer: solver.answer,
-            correction: kept.correction,
-            by_residual: kept.by_residual,
-        };
-        let unit = args! {
-            node_info: kept.node_info,
-            is_fixed: solver.fixed,
-            response: kept.response,
-            rhs: solver.rhs,
-            guess: solver.guess,
-        };
-        let respond = args! { answer: solver.answer, rhs: solver.rhs, is_fixed: solver.fixed, response: kept.response };
-        let press = args! { response: kept.response, by_residual: kept.by_residual, correction: kept.correction };
-        let depth = args! { corrections: told.corrections, units: told.units };
-        let land = args! { codes: kept.codes, slides: kept.slides, came_off: kept.came_off };
-        let commit = args! {
-            node_info: kept.node_info,
-            height: kept.height,
-            committed: resident.committed,
-            before: kept.before,
-            gap_at_start: resident.gap,
-            at_points: told.at_points,
-            status: told.status,
-        };
-        let energies = args! { energies: scratch.energies, totals: told.energies };
-        Ok(Self {
-            place: bind(&sources::PLACE, &[&place])?,
-            current: bind(&sources::CURRENT, &[&args! { increments: kept.increments, increment: scratch.increment }])?,
-            save: bind(&sources::SAVE, &[&args! { force: scratch.force, forces: kept.forces }])?,
-            contact: bind(&sources::CONTACT, &[&trial, &contact])?,
-            measure: bind(&sources::MEASURE, &[&trial, &residual, &measure])?,
-            read: bind(&sources::READ, &[&read])?,
-            system: bind(&sources::SYSTEM, &[&trial, &residual, &system])?,
-            expand: bind(&sources::EXPAND, &[&trial, &residual, &expand])?,
-            unit: bind(&sources::UNIT, &[&unit])?,
-            respond: bind(&sources::RESPOND, &[&respond])?,
-            depth: bind(&sources::DEPTH, &[&depth])?,
-            press: bind(&sources::PRESS, &[&press])?,
-            land: bind(&sources::LAND, &[&land])?,
-            commit: bind(&sources::COMMIT, &[&trial, &commit])?,
-            energies: bind(&sources::ENERGIES, &[&energies])?,
-        })
     }
 }

@@ -1,7 +1,7 @@
 //! The kernels of Newton's iterates.
 
 use super::super::kernel::Kernel;
-use super::super::shader_sources::{ANSWER, BATCH, COULOMB, PLANE};
+use super::super::shader_sources::{BATCH, COULOMB, PLANE, ROWS};
 use super::super::source::{Source, source};
 
 const TOLD: Source = source!("iterate/told.wgsl");
@@ -22,7 +22,7 @@ pub static SAVE: Kernel = Kernel::new("iterate_save", &[BATCH, TOLD, ITERATE, so
 
 /// The contact conditions of a trial.
 pub static CONTACT: Kernel =
-    Kernel::new("iterate_contact", &[BATCH, TOLD, ITERATE, PLANE, COULOMB, ANSWER, source!("iterate/contact.wgsl")]);
+    Kernel::new("iterate_contact", &[BATCH, TOLD, ITERATE, PLANE, COULOMB, ROWS, source!("iterate/contact.wgsl")]);
 
 /// The sums of which its merit is made.
 pub static MEASURE: Kernel = Kernel::new(

@@ -9,7 +9,8 @@ use super::super::error::GpuError;
 use super::super::kernel::Kernel;
 use super::super::pipelines::{Bound, Recorder};
 use super::super::source::Precision;
-use super::levels::{LevelShape, Record};
+use super::records::Record;
+use super::sizes::LevelShape;
 use super::sources::KRYLOV_RUNNING;
 
 /// A kernel with the threads that it takes.
@@ -64,6 +65,14 @@ impl Call {
     pub fn append(&self, list: &mut Recorder<'_>, slots: usize) -> Result<(), GpuError> {
         list.dispatch(&self.bound, self.threads, slots)
     }
+}
+
+/// Appends kernels for so many slots.
+///
+/// # Errors
+/// As [`Recorder::dispatch`].
+pub fn append(calls: &[Call], list: &mut Recorder<'_>, slots: usize) -> Result<(), GpuError> {
+    calls.iter().try_for_each(|call| call.append(list, slots))
 }
 
 /// What Krylov iterations are dispatched for: the slots that run.

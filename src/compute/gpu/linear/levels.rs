@@ -6,81 +6,17 @@ use super::super::context::GpuContext;
 use super::super::error::GpuError;
 use super::super::kernel::Kernel;
 use super::super::pools::Pools;
-use super::RESTART;
 use super::calls::Call;
-use super::parts::Account;
+use super::records::Record;
+use super::sizes::{Account, LevelShape, RESTART, row_threads};
 use super::sources::{
     CYCLE_RESIDUAL, GALERKIN_COARSE, GALERKIN_PRODUCT, INVERT_DIAGONAL, PROLONG, RESTRICT, SMALL_DOWN, SMALL_UP, SMOOTH_START,
     SMOOTH_STEP, SOLVE_COARSEST,
 };
 use crate::linalg::layout::{Layout, LevelLayout, Lists, Rows, TransferLayout};
 
-/// Nodes of which one workgroup has the rows, and its threads.
-const NODES_IN_GROUP: usize = 64;
-const ROWS_IN_GROUP: usize = 192;
-
 /// Nodes of the largest level that one workgroup smooths.
 const SMALL_NODES: usize = 400;
-
-/// The block that `level.wgsl` calls Level.
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-struct LevelBlock {
-    nodes: u32,
-    width: u32,
-    coarse_nodes: u32,
-    products: u32,
-    coarse_width: u32,
-    restart: u32,
-    plate_nodes: u32,
-    coarsest_steps: u32,
-    smoothing_steps: u32,
-    reserved: [u32; 3],
-}
-
-/// What a slot solves, as `record.wgsl` has it.
-#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub struct Record {
-    /// 0 while it goes on.
-    pub done: u32,
-    /// Basis vectors that are complete.
-    pub vectors: u32,
-    /// Steps of the present cycle.
-    pub steps: u32,
-    /// Krylov iterations in all.
-    pub iterations: u32,
-    /// The tolerance is of the first residual.
-    pub relative_to_start: u32,
-    /// Relative residual to be reached.
-    pub tolerance: f32,
-    /// Norm of the residual to be reached.
-    pub goal: f32,
-    /// Norm of the right-hand side.
-    pub rhs_norm: f32,
-    /// Norm of the residual at the guess.
-    pub start_norm: f32,
-    /// Norm of the residual.
-    pub residual: f32,
-    /// Factor of the next basis vector.
-    pub scale: f32,
-    /// Plate force along the solution.
-    pub along: f32,
-    /// Which slot is here in the list of those that run, and after them the others.
-    pub running: u32,
-}
-
-impl Record {
-    /// How each of so many slots begins, all of them running.
-    pub fn of_slots(slots: usize) -> Vec<Self> {
-        (0..slots as u32).map(|running| Self { running, ..Self::default() }).collect()
-    }
-}
-
-/// Threads of the kernels with a thread for each row of so many nodes.
-pub fn row_threads(nodes: usize) -> usize {
-    nodes.div_ceil(NODES_IN_GROUP) * ROWS_IN_GROUP
-}
 
 /// What all levels share.
 #[derive(Clone, Copy, Debug)]
@@ -120,11 +56,6 @@ pub struct Level {
     nodes: usize,
     width: usize,
 }
-
-/// The uniform block of a level, to be named by others.
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(transparent)]
-pub struct LevelShape(LevelBlock);
 
 #[derive(Debug)]
 struct Transfer {
@@ -217,7 +148,7 @@ impl Level {
             }
             _ => None,
         };
-        let sizes = LevelBlock {
+        let shape = LevelShape {
             nodes: layout.nodes as u32,
             width: layout.width as u32,
             coarse_nodes: next.map_or(0, |next| next.nodes as u32),
@@ -230,7 +161,7 @@ impl Level {
             reserved: [0; 3],
         };
         let block = context.block("a level")?;
-        context.upload(&block, &[LevelShape(sizes)])?;
+        context.upload(&block, &[shape])?;
         let vector = 3 * layout.nodes;
         Ok(Self {
             block,
