@@ -12,6 +12,11 @@ struct Dimensions {
     materials: u32,         // sets of parameters: of all cases, then of their opponents, if they have any
 }
 
+// Numbers of a contact point's conditions: residual, force rows, displacement rows.
+const ROWS: u32 = 21u;
+// Numbers of a quadrature point's weighted stress.
+const STRESS: u32 = 9u;
+
 @group(0) @binding(0) var<uniform> dimensions: Dimensions;
 // For each slot: its case, and that case's geometry.
 @group(0) @binding(1) var<storage, read> active_cases: array<vec2<u32>>;

@@ -8,11 +8,14 @@ use asperity::internals::bench::input;
 use asperity::internals::bench::traffic::Sizes;
 use asperity::internals::compute::Compute;
 use asperity::internals::compute::gpu::adapters::adapters;
+use asperity::internals::compute::gpu::arguments::Argument;
+use asperity::internals::compute::gpu::error::ArgumentFlaw;
+use asperity::internals::compute::gpu::layout;
 use asperity::internals::compute::gpu::linear::parts::Part;
 use asperity::internals::compute::gpu::material::{self, Answers};
 use asperity::internals::compute::gpu::report::{Surroundings, report};
-use asperity::internals::compute::gpu::shader_sources::{Binding, Kernel, Precision, Source};
-use asperity::internals::compute::gpu::{DeviceRequest, Evaluation, Gpu, GpuContext, GpuError, KernelTimes};
+use asperity::internals::compute::gpu::source::{Precision, Source};
+use asperity::internals::compute::gpu::{DeviceRequest, Evaluation, Gpu, GpuContext, GpuError, Kernel, KernelTimes};
 use asperity::internals::compute::traffic::Traffic;
 use asperity::internals::simulation::drive::{Drive, Ending, Observer, StepView};
 use asperity::internals::simulation::problem::Problem;
@@ -25,9 +28,9 @@ use std::process::Command;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-static DOUBLE: Kernel = Kernel {
-    name: "double",
-    sources: &[Source {
+static DOUBLE: Kernel = Kernel::new(
+    "double",
+    &[Source {
         path: "tests/device_layer.rs",
         text: "
 @group(0) @binding(0) var<storage, read_write> values: array<real>;
@@ -39,13 +42,11 @@ fn double(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 ",
     }],
-    bindings: &[Binding::ReadWrite],
-    workgroup: 64,
-};
+);
 
 fn double(context: &GpuContext, start: &[f32], times: usize) -> Result<Vec<f32>, GpuError> {
     let values = context.array("values", start)?;
-    let bound = context.bind(&context.pipeline(&DOUBLE, Precision::F32)?, vec![values.binding()])?;
+    let bound = context.bind(&DOUBLE, Precision::F32, &[values.named("values")])?;
     let mut list = context.record();
     for _ in 0..times {
         list.dispatch(&bound, start.len(), 1)?;
@@ -71,7 +72,7 @@ fn a_list_after_a_slow_one_goes_in_pieces_with_the_same_numbers() {
     let Some(context) = device("device_layer", Precision::F32) else { return };
     let context = context.with_longest_submission(Duration::ZERO);
     let values = context.array("values", &[1.0f32; 1000]).unwrap();
-    let bound = context.bind(&context.pipeline(&DOUBLE, Precision::F32).unwrap(), vec![values.binding()]).unwrap();
+    let bound = context.bind(&DOUBLE, Precision::F32, &[values.named("values")]).unwrap();
     let before = context.traffic();
     for (lists, ahead) in [(1, 0), (2, 4), (3, 8)] {
         let mut list = context.record();
@@ -129,8 +130,7 @@ fn parts_of_arrays_and_empty_ones() {
 fn a_lost_device_hands_out_nothing() {
     let Some(context) = device("device_layer", Precision::F32) else { return };
     let values = context.array("values", &[1.0f32; 100]).unwrap();
-    let pipeline = context.pipeline(&DOUBLE, Precision::F32).unwrap();
-    let bound = context.bind(&pipeline, vec![values.binding()]).unwrap();
+    let bound = context.bind(&DOUBLE, Precision::F32, &[values.named("values")]).unwrap();
     assert_eq!(context.download(&values).unwrap(), [1.0; 100]);
     let mut list = context.record();
     list.dispatch(&bound, 100, 1).unwrap();
@@ -168,23 +168,23 @@ fn what_does_not_fit_is_refused_before_it_is_tried() {
 
 #[test]
 fn a_fault_of_the_program_is_an_error_with_its_place() {
-    static BROKEN: Kernel = Kernel {
-        name: "broken",
-        sources: &[Source {
-            path: "shaders/broken.wgsl",
-            text: "@compute @workgroup_size(1)\nfn broken() {\n    let a: real = 1u;\n}\n",
-        }],
-        bindings: &[],
-        workgroup: 1,
-    };
+    static BROKEN: Kernel = Kernel::new(
+        "broken",
+        &[Source { path: "shaders/broken.wgsl", text: "@compute @workgroup_size(1)\nfn broken() {\n    let a: real = 1u;\n}\n" }],
+    );
     let Some(context) = device("device_layer", Precision::F32) else { return };
     let error = context.pipeline(&BROKEN, Precision::F32).unwrap_err();
     assert!(matches!(&error, GpuError::Shader { place, .. } if place == "shaders/broken.wgsl:3"), "{error}");
-    // a wrong number of arguments, an argument of the wrong kind
-    let pipeline = context.pipeline(&DOUBLE, Precision::F32).unwrap();
-    assert!(matches!(context.bind(&pipeline, vec![]), Err(GpuError::Length { expected: 1, given: 0, .. })));
+    // an argument that is missing, unknown or there twice, and one of the wrong kind
+    let values = context.array("values", &[1.0f32]).unwrap();
     let block = context.block::<[f32; 4]>("block").unwrap();
-    assert!(matches!(context.bind(&pipeline, vec![block.binding()]), Err(GpuError::Rejected { .. })));
+    let bind = |arguments: &[Argument<'_>]| context.bind(&DOUBLE, Precision::F32, arguments).map(drop).unwrap_err();
+    let flawed = |name: &str, flaw| GpuError::Argument { kernel: "double", name: name.to_owned(), flaw };
+    assert_eq!(bind(&[]), flawed("values", ArgumentFlaw::Missing));
+    let [right, other] = ["values", "value"].map(|name| values.named(name));
+    assert_eq!(bind(&[right.clone(), other]), flawed("value", ArgumentFlaw::Unknown));
+    assert_eq!(bind(&[right.clone(), right]), flawed("values", ArgumentFlaw::Doubled));
+    assert!(matches!(bind(&[block.named("values")]), GpuError::Rejected { .. }));
     // none of this harms the device
     assert_eq!(double(&context, &[3.0], 1).unwrap(), [6.0]);
 }
@@ -200,18 +200,18 @@ fn chunks_give_the_same_bits_as_one_piece() {
     let points = 1000;
     let materials: Vec<_> = (1..=40).map(|i| material(1e-3 * f64::from(i))).collect();
     let value = |i: usize| ((i * 7919) % 1009) as f32 * 2e-5 - 1e-2;
-    let relative: Vec<f32> = (0..materials.len() * material::RELATIVE * points).map(value).collect();
-    let committed = vec![0.0f32; materials.len() * material::STATE * points];
+    let relative: Vec<f32> = (0..materials.len() * layout::RELATIVE * points).map(value).collect();
+    let committed = vec![0.0f32; materials.len() * layout::STATE * points];
     // 20 MB in all, in 4 MiB
     assert!(material::ReturnMapping::new(&context, &materials, points).is_err());
     let chunked = material::return_mapping(&context, &materials, points, &relative, &committed).unwrap();
     for case in [0, 17, 39] {
         let part = |data: &[f32], components: usize| data[case * components * points..][..components * points].to_vec();
-        let (relative, committed) = (part(&relative, material::RELATIVE), part(&committed, material::STATE));
+        let (relative, committed) = (part(&relative, layout::RELATIVE), part(&committed, layout::STATE));
         let alone = material::return_mapping(&context, &materials[case..=case], points, &relative, &committed).unwrap();
         let expected = Answers {
-            answer: part(&chunked.answer, material::ANSWER),
-            tangent: part(&chunked.tangent, material::TANGENT),
+            answer: part(&chunked.answer, layout::ANSWER),
+            tangent: part(&chunked.tangent, layout::TANGENT),
             status: chunked.status[case * points..][..points].to_vec(),
         };
         assert!(alone == expected, "case {case}");
@@ -249,8 +249,8 @@ fn bounds_checks_do_not_change_a_bit() {
         [Hardening::power(1e-3, 0.1, 0.3), Hardening::hollomon(0.01, 5.0, 1.0), Hardening::table(&[[0.0, 1e-3], [0.01, 2e-3]])];
     let materials = laws.map(|law| Material::<f32> { elasticity: Elasticity::new(1.0, 0.3), hardening: law.unwrap() });
     let points = 100;
-    let relative: Vec<f32> = (0..3 * material::RELATIVE * points).map(|i| ((i * 7919) % 1009) as f32 * 2e-5 - 1e-2).collect();
-    let committed = vec![0.0f32; 3 * material::STATE * points];
+    let relative: Vec<f32> = (0..3 * layout::RELATIVE * points).map(|i| ((i * 7919) % 1009) as f32 * 2e-5 - 1e-2).collect();
+    let committed = vec![0.0f32; 3 * layout::STATE * points];
     let map = |context: &GpuContext| material::return_mapping(context, &materials, points, &relative, &committed).unwrap();
     let context = context.with_checks(true);
     let checked = map(&context);
@@ -263,11 +263,11 @@ fn only_the_active_cases_are_touched() {
     let Some(context) = device("device_layer", Precision::F32) else { return };
     let material = Material::<f32> { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::ideal(1e-3).unwrap() };
     let kernel = material::ReturnMapping::new(&context, &vec![material; 3], 2).unwrap();
-    let committed = [0.0f32; 3 * 2 * material::STATE];
-    let relative = |size: f32| (0..3 * 2 * material::RELATIVE).map(|i| size * (i % 7) as f32).collect::<Vec<_>>();
+    let committed = [0.0f32; 3 * 2 * layout::STATE];
+    let relative = |size: f32| (0..3 * 2 * layout::RELATIVE).map(|i| size * (i % 7) as f32).collect::<Vec<_>>();
     let first = kernel.run(&context, &[0, 1, 2], &relative(1e-4), &committed).unwrap();
     let second = kernel.run(&context, &[2, 0], &relative(2e-4), &committed).unwrap();
-    let case = |a: &Answers<f32>, c: usize| a.answer[c * 2 * material::ANSWER..][..2 * material::ANSWER].to_vec();
+    let case = |a: &Answers<f32>, c: usize| a.answer[c * 2 * layout::ANSWER..][..2 * layout::ANSWER].to_vec();
     assert_eq!(case(&first, 1), case(&second, 1));
     assert!(case(&first, 0) != case(&second, 0) && case(&first, 2) != case(&second, 2));
     assert!(matches!(kernel.run(&context, &[3], &relative(0.0), &committed), Err(GpuError::Length { .. })));
@@ -300,7 +300,7 @@ fn a_profile_has_every_dispatch() {
 
     let part = context.part(1 << 20);
     let values = part.array("values", &start).unwrap().whole();
-    let bound = part.bind(&part.pipeline(&DOUBLE, Precision::F32).unwrap(), vec![values.binding()]).unwrap();
+    let bound = part.bind(&DOUBLE, Precision::F32, &[values.named("values")]).unwrap();
     let mut list = part.record();
     list.count_for(Some(0));
     list.dispatch(&bound, start.len(), 1).unwrap();

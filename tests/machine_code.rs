@@ -8,7 +8,10 @@ use std::io::Write;
 use std::path::Path;
 
 use ash::{khr, vk};
-use asperity::internals::compute::gpu::shader_sources::{Binding, KERNELS, Kernel, Precision};
+use asperity::internals::compute::gpu::kernel::Kernel;
+use asperity::internals::compute::gpu::kernels::KERNELS;
+use asperity::internals::compute::gpu::reflect::Binding;
+use asperity::internals::compute::gpu::source::Precision;
 use asperity::internals::compute::gpu::validate::{Checked, validate};
 
 const ICD: &str = "/usr/share/vulkan/icd.d/radeon_icd.x86_64.json";
@@ -61,16 +64,17 @@ impl Radv {
         };
         let options = naga::back::spv::Options { lang_version: (1, 3), bounds_check_policies: policies, ..Default::default() };
         let words = naga::back::spv::write_vec(&module, &info, &options, None).unwrap();
-        let kind = |binding: &Binding| match binding {
+        let kind = |binding: Binding| match binding {
             Binding::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
             Binding::Read | Binding::ReadWrite => vk::DescriptorType::STORAGE_BUFFER,
         };
-        let bindings: Vec<_> = (0..)
-            .zip(kernel.bindings)
-            .map(|(number, binding)| {
+        let variables = &kernel.interface().unwrap().variables;
+        let bindings: Vec<_> = variables
+            .iter()
+            .map(|variable| {
                 vk::DescriptorSetLayoutBinding::default()
-                    .binding(number)
-                    .descriptor_type(kind(binding))
+                    .binding(variable.binding)
+                    .descriptor_type(kind(variable.kind))
                     .descriptor_count(1)
                     .stage_flags(vk::ShaderStageFlags::COMPUTE)
             })

@@ -5,7 +5,7 @@ mod device;
 
 use asperity::internals::compute::gpu::Precision;
 use asperity::internals::compute::gpu::context::FAULT_VARIABLE;
-use asperity::internals::compute::gpu::shader_sources::KERNELS;
+use asperity::internals::compute::gpu::kernels::KERNELS;
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Output};

@@ -6,17 +6,18 @@
 
 mod device;
 
-use asperity::internals::compute::gpu::shader_sources::{Binding, Kernel, MATH, Source};
-use asperity::internals::compute::gpu::{DeviceReal, GpuContext};
+use asperity::internals::compute::gpu::shader_sources::MATH;
+use asperity::internals::compute::gpu::source::Source;
+use asperity::internals::compute::gpu::{DeviceReal, GpuContext, Kernel};
 use device::device;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 const FUNCTIONS: [&str; 5] = ["exp_", "expm1_", "log_", "log1p_", "pow_"];
 
-static TABULATE: Kernel = Kernel {
-    name: "tabulate",
-    sources: &[
+static TABULATE: Kernel = Kernel::new(
+    "tabulate",
+    &[
         MATH,
         Source {
             path: "tests/shader_math.rs",
@@ -42,17 +43,15 @@ fn tabulate(@builtin(global_invocation_id) id: vec3<u32>) {
 ",
         },
     ],
-    bindings: &[Binding::Read, Binding::ReadWrite],
-    workgroup: 64,
-};
+);
 
 /// All five functions at every (x, y): values[function][argument].
 fn tabulate<R: DeviceReal>(context: &GpuContext, arguments: &[[R; 2]]) -> Vec<Vec<R>> {
     let flat: Vec<R> = arguments.iter().flatten().copied().collect();
     let input = context.array("arguments", &flat).unwrap();
     let output = context.zeros::<R>("values", FUNCTIONS.len() * arguments.len()).unwrap();
-    let pipeline = context.pipeline(&TABULATE, R::PRECISION).unwrap();
-    let bound = context.bind(&pipeline, vec![input.binding(), output.binding()]).unwrap();
+    let arguments_of = [output.named("values"), input.named("arguments")];
+    let bound = context.bind(&TABULATE, R::PRECISION, &arguments_of).unwrap();
     let mut list = context.record();
     list.dispatch(&bound, arguments.len(), FUNCTIONS.len()).unwrap();
     list.submit().unwrap();

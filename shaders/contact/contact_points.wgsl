@@ -5,8 +5,11 @@
 @group(0) @binding(4) var<storage, read> friction: array<real>;         // [case]
 @group(0) @binding(5) var<storage, read> gap_at_start: array<real>;     // [case][point]
 @group(0) @binding(6) var<storage, read> trial: array<real>;            // [slot][force, increment][point]
-@group(0) @binding(7) var<storage, read_write> answer: array<real>;     // [slot][residual, force rows, displacement rows][point]
-@group(0) @binding(8) var<storage, read_write> answer_status: array<u32>;   // [slot][point]: status + 4, 8, 16 for fixed x, y, z
+@group(0) @binding(7) var<storage, read_write> rows: array<real>;     // [slot][residual, force rows, displacement rows][point]
+@group(0) @binding(8) var<storage, read_write> codes: array<u32>;   // [slot][point]: status + 4, 8, 16 for fixed x, y, z
+
+// Numbers of a point's trial.
+const TRIAL: u32 = 6u;
 
 @compute @workgroup_size(64)
 fn contact_points(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -16,7 +19,7 @@ fn contact_points(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let slot = id.y;
     let case_index = active_cases[slot].x;
-    let t = 6u * slot * points + id.x;
+    let t = TRIAL * slot * points + id.x;
     let increment = vec3<real>(trial[t + 3u * points], trial[t + 4u * points], trial[t + 5u * points]);
     let point = ContactPoint(
         vec3<real>(trial[t], trial[t + points], trial[t + 2u * points]),
@@ -25,7 +28,7 @@ fn contact_points(@builtin(global_invocation_id) id: vec3<u32>) {
         weight[active_cases[slot].y * points + id.x],
         on_symmetry_plane[id.x] != 0u,
     );
-    let rows = contact_rows(friction[case_index], point);
-    store_rows(21u * slot * points + id.x, rows);
-    answer_status[slot * points + id.x] = status_code(rows);
+    let found = contact_rows(friction[case_index], point);
+    store_rows(ROWS * slot * points + id.x, found);
+    codes[slot * points + id.x] = status_code(found);
 }

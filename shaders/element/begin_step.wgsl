@@ -11,7 +11,7 @@ fn hex8_begin_step(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let case_index = active_cases[id.y].x;
-    let h = 14u * case_index * points + id.x;
+    let h = HISTORY * case_index * points + id.x;
     let committed = PointState(
         Sym(
             vec3<real>(history[h], history[h + points], history[h + 2u * points]),
@@ -27,7 +27,7 @@ fn hex8_begin_step(@builtin(global_invocation_id) id: vec3<u32>) {
         history[h + 13u * points],
     );
     let start = anticipate(committed, flow, anticipated[case_index]);
-    let s = 7u * case_index * points + id.x;
+    let s = STATE * case_index * points + id.x;
     state[s] = start.be.diagonal.x;
     state[s + points] = start.be.diagonal.y;
     state[s + 2u * points] = start.be.diagonal.z;

@@ -30,7 +30,7 @@ fn hex8_energies(@builtin(global_invocation_id) id: vec3<u32>) {
         total += v;
         elastic += point_work[2u * slot * points + point];
         plastic += point_work[(2u * slot + 1u) * points + point];
-        alpha = max(alpha, next_history[(14u * slot + 6u) * points + point]);
+        alpha = max(alpha, next_history[(HISTORY * slot + 6u) * points + point]);
     }
     let material = material_of(case_index, element);
     let first = 3u * slot * elements + element;

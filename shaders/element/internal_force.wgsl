@@ -18,7 +18,7 @@ fn hex8_internal_force(@builtin(global_invocation_id) id: vec3<u32>) {
     let tau = sym_scale(point_volume(at.geometry, at.point), kirchhoff_stress(a, p));
     let natural = sym_matrix(tau) * transpose(a.k.natural);
     let points = point_count();
-    let first = 9u * at.slot * points + at.point;
+    let first = STRESS * at.slot * points + at.point;
     for (var k = 0u; k < 3u; k++) {
         let column = first + 3u * k * points;
         stress[column] = natural[k].x;

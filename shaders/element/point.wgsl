@@ -38,7 +38,7 @@ fn mean_dilatation(slot: u32, geometry: u32, element: u32) -> vec2<real> {
 
 fn load_state(case_index: u32, point: u32) -> PointState {
     let points = point_count();
-    let s = 7u * case_index * points + point;
+    let s = STATE * case_index * points + point;
     let be = Sym(
         vec3<real>(state[s], state[s + points], state[s + 2u * points]),
         vec3<real>(state[s + 3u * points], state[s + 4u * points], state[s + 5u * points]),

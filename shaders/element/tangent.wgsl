@@ -122,7 +122,7 @@ fn make_pairs(slot: u32, element: u32, first_point: u32, b: u32, offset: u32, bo
         }
     }
     let bulk_b = component(first_point, 30u) * volume_b;
-    let out = 324u * (slot * dimensions.elements + element);
+    let out = ELEMENT_BLOCKS * (slot * dimensions.elements + element);
     store_block(out + 9u * pair_place(b, offset), first, bulk_b);
     if both {
         store_block(out + 9u * pair_place(b, offset + 1u), second, bulk_b);

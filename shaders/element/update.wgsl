@@ -17,7 +17,7 @@ fn hex8_update(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let points = point_count();
-    let h = 14u * at.case_index * points + at.point;
+    let h = HISTORY * at.case_index * points + at.point;
     let committed = PointState(
         Sym(
             vec3<real>(history[h], history[h + points], history[h + 2u * points]),
@@ -31,7 +31,7 @@ fn hex8_update(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let s = done.response.state;
-    let first = 14u * at.slot * points + at.point;
+    let first = HISTORY * at.slot * points + at.point;
     next_history[first] = s.be.diagonal.x;
     next_history[first + points] = s.be.diagonal.y;
     next_history[first + 2u * points] = s.be.diagonal.z;

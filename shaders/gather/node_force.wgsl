@@ -30,7 +30,7 @@ fn gather_node_force(@builtin(global_invocation_id) id: vec3<u32>) {
         for (var q = 0u; q < 8u; q++) {
             let point = 8u * element + q;
             let n = named_derivative(hanging, entry % 8u, q);
-            let at = 9u * slot * points + point;
+            let at = STRESS * slot * points + point;
             of_element += n.x * vec3<real>(stress[at], stress[at + points], stress[at + 2u * points]);
             of_element += n.y * vec3<real>(stress[at + 3u * points], stress[at + 4u * points], stress[at + 5u * points]);
             of_element += n.z * vec3<real>(stress[at + 6u * points], stress[at + 7u * points], stress[at + 8u * points]);

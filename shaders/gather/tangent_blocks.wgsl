@@ -22,7 +22,7 @@ fn gather_tangent_blocks(@builtin(global_invocation_id) id: vec3<u32>) {
         let offset = (a - b) % 8u;
         let is_there = offset < 4u || (offset == 4u && b < 4u);
         let pair = select(pair_place(a, (b - a) % 8u), pair_place(b, offset), is_there);
-        let at = 324u * (slot * dimensions.elements + entry / 64u) + 9u * pair;
+        let at = ELEMENT_BLOCKS * (slot * dimensions.elements + entry / 64u) + 9u * pair;
         // The other way round it is transposed.
         let next_column = select(3u, 1u, is_there);
         let next_row = 4u - next_column;

@@ -16,6 +16,9 @@
 @group(0) @binding(14) var<storage, read_write> at_points: array<real>;
 @group(0) @binding(15) var<storage, read_write> status: array<u32>;     // [slot][point]
 
+// Numbers of a point that are recorded.
+const AT_POINT: u32 = 6u;
+
 @compute @workgroup_size(64)
 fn iterate_commit(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= dimensions.nodes || id.y >= dimensions.in_dispatch {
@@ -41,7 +44,7 @@ fn iterate_commit(@builtin(global_invocation_id) id: vec3<u32>) {
     gap_at_start[case_index * points + point] = gap(height[active_cases[slot].y * points + point], u.z);
     let now = codes[iterate_place_of(case_index, marks[slot].x, points) + point] % 4u;
     status[slot * points + point] = now;
-    let first = iterate_place_of(case_index, marks[slot].x, 21u * points) + point;
+    let first = iterate_place_of(case_index, marks[slot].x, ROWS * points) + point;
     // Along the plane what Coulomb's bound allows, normal to it the internal force.
     var exerted = vec3<real>();
     if now != OPEN {
@@ -52,7 +55,7 @@ fn iterate_commit(@builtin(global_invocation_id) id: vec3<u32>) {
         );
     }
     for (var i = 0u; i < 3u; i++) {
-        at_points[(6u * slot + i) * points + point] = u[i];
-        at_points[(6u * slot + 3u + i) * points + point] = exerted[i];
+        at_points[(AT_POINT * slot + i) * points + point] = u[i];
+        at_points[(AT_POINT * slot + 3u + i) * points + point] = exerted[i];
     }
 }

@@ -9,9 +9,9 @@
 @group(0) @binding(11) var<storage, read> increments: array<real>;      // [case][iterate][3 node + i]
 @group(0) @binding(12) var<storage, read> forces: array<real>;          // [case][iterate][3 node + i]
 // [case][iterate][residual, force rows, displacement rows][point]
-@group(0) @binding(13) var<storage, read_write> answer: array<real>;
+@group(0) @binding(13) var<storage, read_write> rows: array<real>;
 // [case][iterate][point]: status + 4, 8, 16 for fixed x, y, z
-@group(0) @binding(14) var<storage, read_write> answer_status: array<u32>;
+@group(0) @binding(14) var<storage, read_write> codes: array<u32>;
 
 @compute @workgroup_size(64)
 fn iterate_contact(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -35,6 +35,6 @@ fn iterate_contact(@builtin(global_invocation_id) id: vec3<u32>) {
         coefficient = 0.0;
     }
     let found = contact_rows(coefficient, point);
-    store_rows(iterate_place_of(case_index, trial, 21u * points) + id.x, found);
-    answer_status[iterate_place_of(case_index, trial, points) + id.x] = status_code(found);
+    store_rows(iterate_place_of(case_index, trial, ROWS * points) + id.x, found);
+    codes[iterate_place_of(case_index, trial, points) + id.x] = status_code(found);
 }

@@ -59,7 +59,7 @@ fn iterate_read(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocati
         let status = code % 4u;
         let status_before = codes[iterate_place_of(case_index, mark.x, points) + k] % 4u;
         let f_z = forces[of_forces + 3u * contact_node[k] + 2u];
-        let row = iterate_place_of(case_index, mark.y, 21u * points) + k;
+        let row = iterate_place_of(case_index, mark.y, ROWS * points) + k;
         let along = rows[row] * rows[row];
         let across = rows[row + points] * rows[row + points];
         let sticks = slides[case_index * points + k] == 0u;

@@ -31,7 +31,7 @@ fn node_residual(slot: u32, iterate: u32, node: u32, h: real) -> NodeResidual {
     out.rhs = -out.residual;
     if info >= FIRST_POINT {
         let point = info / FIRST_POINT - 1u;
-        let first = iterate_place_of(case_index, iterate, 21u * points) + point;
+        let first = iterate_place_of(case_index, iterate, ROWS * points) + point;
         out.residual = vec3<real>(rows[first], rows[first + points], rows[first + 2u * points]);
         out.rhs = -out.residual;
         let by_contact = codes[iterate_place_of(case_index, iterate, points) + point] / 4u;

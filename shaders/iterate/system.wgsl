@@ -8,6 +8,9 @@
 // [slot][slides, force rows, displacement rows][point], alike
 @group(0) @binding(15) var<storage, read_write> sliding: array<u32>;
 
+// Numbers of a point that slides.
+const POINT_ROWS: u32 = 19u;
+
 @compute @workgroup_size(64)
 fn iterate_system(@builtin(global_invocation_id) id: vec3<u32>) {
     let nodes = dimensions.nodes;
@@ -28,13 +31,13 @@ fn iterate_system(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let points = dimensions.contact_points;
     let point = node_info[id.x] / FIRST_POINT - 1u;
-    let out = 19u * slot * points + point;
+    let out = POINT_ROWS * slot * points + point;
     sliding[out] = single_bits(0.0);
     if codes[iterate_place_of(case_index, current, points) + point] % 4u == SLIP {
         sliding[out] = single_bits(1.0);
     }
-    let first = iterate_place_of(case_index, current, 21u * points) + point;
-    for (var c = 1u; c < 19u; c++) {
+    let first = iterate_place_of(case_index, current, ROWS * points) + point;
+    for (var c = 1u; c < POINT_ROWS; c++) {
         sliding[out + c * points] = single_bits(rows[first + (c + 2u) * points]);
     }
 }

@@ -13,6 +13,8 @@
 @group(0) @binding(7) var<uniform> counts: vec4<u32>;               // upper blocks, contact points
 
 const NOWHERE: u32 = 0xffffffffu;
+// Numbers of a contact point: whether it slides, its rows.
+const POINT_ROWS: u32 = 19u;
 
 @compute @workgroup_size(64)
 fn assemble(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -54,7 +56,7 @@ fn block_of(slot: u32, node: u32, block: u32) -> mat3x3<real> {
     }
     let point = point_of[node];
     if point != NOWHERE {
-        let at = 19u * slot * counts.y + point;
+        let at = POINT_ROWS * slot * counts.y + point;
         if real_of_single(rows[at]) > 0.0 {
             a = transpose(row_block(at, 1u)) * a;
             if block / level.nodes == diagonal[node] {

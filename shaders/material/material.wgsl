@@ -18,6 +18,10 @@ struct PointState {
     alpha: real,
 }
 
+// Numbers of a PointState, and with those of its last Flow (multistep.wgsl) behind them.
+const STATE: u32 = 7u;
+const HISTORY: u32 = 14u;
+
 struct Material {
     elasticity: Elasticity,
     hardening: Hardening,
@@ -27,9 +31,11 @@ struct Material {
 // stored as reals.
 @group(0) @binding(7) var<storage, read> material_parameters: array<real>;
 
+const PARAMETERS: u32 = 9u;
+
 fn load_material(index: u32, materials: u32) -> Material {
-    var p: array<real, 9>;
-    for (var i = 0u; i < 9u; i++) {
+    var p: array<real, PARAMETERS>;
+    for (var i = 0u; i < PARAMETERS; i++) {
         p[i] = material_parameters[i * materials + index];
     }
     let hardening = Hardening(u32(p[2]), p[3], p[4], p[5], p[6], u32(p[7]), u32(p[8]));

@@ -16,6 +16,11 @@ struct Dimensions {
 @group(0) @binding(5) var<storage, read_write> tangent: array<real>;        // 36: c_ab at 6 a + b
 @group(0) @binding(6) var<storage, read_write> point_status: array<u32>;
 
+// Numbers of a point in these.
+const RELATIVE: u32 = 9u;
+const ANSWER: u32 = 30u;
+const TANGENT: u32 = 36u;
+
 // Index of component 0 of a point in an array of `components`; the next component is `points`
 // further.
 fn first_component(case_index: u32, components: u32, point: u32) -> u32 {
@@ -45,7 +50,7 @@ fn return_mapping_points(@builtin(global_invocation_id) id: vec3<u32>) {
     let points = dimensions.points;
     let material = load_material(case_index, dimensions.cases);
 
-    let g = first_component(case_index, 9u, point);
+    let g = first_component(case_index, RELATIVE, point);
     var relative: mat3x3<real>;
     for (var k = 0u; k < 3u; k++) {
         relative[k] = vec3<real>(
@@ -54,7 +59,7 @@ fn return_mapping_points(@builtin(global_invocation_id) id: vec3<u32>) {
             relative_gradient[g + (6u + k) * points],
         );
     }
-    let s = first_component(case_index, 7u, point);
+    let s = first_component(case_index, STATE, point);
     let be = Sym(
         vec3<real>(committed[s], committed[s + points], committed[s + 2u * points]),
         vec3<real>(committed[s + 3u * points], committed[s + 4u * points], committed[s + 5u * points]),
@@ -66,7 +71,7 @@ fn return_mapping_points(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let j = determinant_minus_one(relative);
-    var at = first_component(case_index, 30u, point);
+    var at = first_component(case_index, ANSWER, point);
     at = store_sym(at, r.stress);
     at = store_sym(at, r.state.be);
     at = store(at, r.state.alpha);
@@ -85,7 +90,7 @@ fn return_mapping_points(@builtin(global_invocation_id) id: vec3<u32>) {
     at = store(at, elastic_energy_deviatoric(material.elasticity, r.state.be));
 
     let c = deviatoric_tangent(r);
-    let t = first_component(case_index, 36u, point);
+    let t = first_component(case_index, TANGENT, point);
     for (var ab = 0u; ab < 36u; ab++) {
         tangent[t + ab * points] = deviatoric_tangent_component(c, ab / 6u, ab % 6u);
     }

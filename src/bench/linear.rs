@@ -7,7 +7,8 @@ use super::input::{mesh, models};
 use super::report::{On, Outcome, Report, Row};
 use super::timing::{Timing, measure as repeat, of_kernels};
 use super::{BenchError, Options};
-use crate::compute::gpu::linear::parts::{Account, Part};
+use crate::compute::gpu::linear::parts::Part;
+use crate::compute::gpu::linear::sizes::Account;
 use crate::compute::gpu::{DeviceReal, Evaluation, Gpu, GpuContext};
 use crate::compute::{CaseModel, ComputeError};
 

@@ -3,9 +3,7 @@
 //! like are left out.
 
 use crate::compute::gpu::Evaluation;
-use crate::compute::gpu::material::{ANSWER, RELATIVE, STATE, TANGENT};
-use crate::compute::gpu::resident::{COORDINATES, HISTORY};
-use crate::compute::gpu::scratch::{CONTACT_ANSWER, CONTACT_TRIAL, ELEMENT_BLOCKS};
+use crate::compute::gpu::layout::{ANSWER, COORDINATES, ELEMENT_BLOCKS, HISTORY, RELATIVE, ROWS, STATE, TANGENT, TRIAL};
 use crate::contact::coulomb::Rows;
 use crate::element::hex8::{Geometry, NODES, Nodal, Points, State, Tangent};
 use crate::mesh::Mesh;
@@ -60,7 +58,7 @@ impl Sizes {
                 let gather = INDEX * (upper + PAIRS * self.elements) + elements + word * 9 * upper;
                 jacobian + at_points + elements + gather
             }
-            Evaluation::Contact => self.contact_points * (word * (3 + CONTACT_TRIAL + CONTACT_ANSWER) + 2 * INDEX),
+            Evaluation::Contact => self.contact_points * (word * (3 + TRIAL + ROWS) + 2 * INDEX),
             Evaluation::Update => {
                 let energies = word * (5 * points + 4 * self.elements);
                 // the committed state is read, and the new one written with its flow

@@ -1,6 +1,7 @@
 //! The material point: return mapping, tangent, volumetric half, energies, for every hardening law.
 
-use crate::compute::gpu::material::{ANSWER, Answers, PointStatus, RELATIVE, STATE, TANGENT, return_mapping};
+use crate::compute::gpu::layout::{ANSWER, RELATIVE, STATE, TANGENT};
+use crate::compute::gpu::material::{Answers, PointStatus, return_mapping};
 use crate::compute::gpu::{DeviceReal, GpuContext};
 use crate::material::{self, Elasticity, Hardening, Material, PointError, PointState, j2};
 use crate::random::Seeded;

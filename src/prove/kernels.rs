@@ -7,7 +7,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::progress::ProveProgress;
-use crate::compute::gpu::shader_sources::KERNELS;
+use crate::compute::gpu::kernels::KERNELS;
 use crate::compute::gpu::{GpuContext, Precision};
 use crate::conformance::{Comparison, comparisons};
 

@@ -6,8 +6,8 @@ use std::time::Instant;
 use serde::Serialize;
 
 use crate::bench::BenchError;
-use crate::compute::gpu::shader_sources::{Binding, Kernel, Source};
-use crate::compute::gpu::{GpuContext, GpuError, Precision};
+use crate::compute::gpu::source::Source;
+use crate::compute::gpu::{GpuContext, GpuError, Kernel, Precision};
 
 /// Dispatches of a list.
 const DISPATCHES: usize = 1000;
@@ -26,9 +26,9 @@ pub struct Latency {
 }
 
 /// Reads nothing and writes nothing.
-static NOTHING: Kernel = Kernel {
-    name: "nothing",
-    sources: &[Source {
+static NOTHING: Kernel = Kernel::new(
+    "nothing",
+    &[Source {
         path: "src/prove/latency.rs",
         text: "
 @group(0) @binding(0) var<storage, read> numbers: array<real>;
@@ -38,14 +38,12 @@ fn nothing(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 ",
     }],
-    bindings: &[Binding::Read],
-    workgroup: 1,
-};
+);
 
 /// Adds one to a number, which the next dispatch needs.
-static COUNT: Kernel = Kernel {
-    name: "count",
-    sources: &[Source {
+static COUNT: Kernel = Kernel::new(
+    "count",
+    &[Source {
         path: "src/prove/latency.rs",
         text: "
 @group(0) @binding(0) var<storage, read_write> numbers: array<real>;
@@ -55,9 +53,7 @@ fn count() {
 }
 ",
     }],
-    bindings: &[Binding::ReadWrite],
-    workgroup: 1,
-};
+);
 
 /// Measures the three.
 ///
@@ -65,7 +61,7 @@ fn count() {
 /// The device's fault; [`GpuError::Stale`] where dispatches were left out.
 pub fn measure(context: Arc<GpuContext>) -> Result<Latency, BenchError> {
     let numbers = context.array("what is counted", &[0.0f32; 4])?;
-    let bound = |kernel: &'static Kernel| context.bind(&context.pipeline(kernel, Precision::F32)?, vec![numbers.binding()]);
+    let bound = |kernel: &'static Kernel| context.bind(kernel, Precision::F32, &[numbers.named("numbers")]);
     let (nothing, count) = (bound(&NOTHING)?, bound(&COUNT)?);
     let quickest = |kernel, dispatches: usize| -> Result<f64, GpuError> {
         let mut best = f64::INFINITY;

@@ -6,7 +6,7 @@
 //! on naga's intermediate representation and on the text.
 
 use asperity::internals::compute::gpu::GpuError;
-use asperity::internals::compute::gpu::shader_sources::{Assembled, Precision};
+use asperity::internals::compute::gpu::source::{Assembled, Precision};
 use asperity::internals::compute::gpu::validate::{Checked, validate};
 use naga::proc::TypeResolution;
 use naga::valid::FunctionInfo;

@@ -5,15 +5,16 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::batch::{Batch, Dispatch, Evaluation, Parts};
+use super::batch::{Batch, Parts};
 use super::buffers::DeviceReal;
 use super::context::GpuContext;
+use super::dispatch::{Dispatch, Evaluation, status_of};
 use super::error::GpuError;
-use super::linear::Linear;
+use super::layout::{HISTORY, ROWS, STATE, TRIAL};
 use super::linear::pack::Packed;
 use super::linear::parts::Part;
-use super::scratch::{CONTACT_ANSWER, CONTACT_TRIAL};
-use super::shader_sources::Precision;
+use super::linear::solver::Linear;
+use super::source::Precision;
 use crate::compute::call::not_asked;
 use crate::compute::cpu::Cpu;
 use crate::compute::handle::{at, at_contact};
@@ -22,7 +23,7 @@ use crate::compute::linear::{Solved, System};
 use crate::compute::{
     About, Answer, Blocks, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Outcome,
 };
-use crate::contact::coulomb::{CONTACT_WEIGHT, Rows, Status};
+use crate::contact::coulomb::{CONTACT_WEIGHT, Rows};
 use crate::contact::plane::slip;
 use crate::element::hex8::QUADRATURE_POINTS;
 use crate::material::PointState;
@@ -203,8 +204,8 @@ impl<R: DeviceReal> Gpu<R> {
 
     fn contact(&mut self, dispatch: &Dispatch, calls: &mut [(usize, Call)]) -> Result<Vec<Answer>, ComputeError> {
         let points = self.batch()?.sizes().contact_points;
-        let mut trial = vec![R::ZERO; dispatch.requests.len() * CONTACT_TRIAL * points];
-        for (trial, &i) in trial.chunks_exact_mut(CONTACT_TRIAL * points).zip(&dispatch.requests) {
+        let mut trial = vec![R::ZERO; dispatch.requests.len() * TRIAL * points];
+        for (trial, &i) in trial.chunks_exact_mut(TRIAL * points).zip(&dispatch.requests) {
             let (case, Call::Contact { displacement, force }) = &calls[i] else { return Err(not_asked()) };
             self.refresh(*case)?;
             let start = at_contact(&self.models[*case].mesh, &self.committed[*case]);
@@ -295,7 +296,7 @@ impl<R: DeviceReal> Gpu<R> {
             PointState { be: std::array::from_fn(component), alpha: component(6) }
         };
         let flow = |p: usize| {
-            let component = |c: usize| state[(super::resident::STATE + c) * count + p].to_f64();
+            let component = |c: usize| state[(STATE + c) * count + p].to_f64();
             Flow { strain: std::array::from_fn(component), alpha: component(6) }
         };
         let elements = batch.sizes().elements;
@@ -310,7 +311,7 @@ impl<R: DeviceReal> Gpu<R> {
     fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError> {
         let batch = self.batch()?;
         let count = batch.sizes().points();
-        let mut rows = vec![R::ZERO; super::resident::HISTORY * count];
+        let mut rows = vec![R::ZERO; HISTORY * count];
         for (p, (point, flow)) in state.points.iter().flatten().zip(state.flow.iter().flatten()).enumerate() {
             let numbers = point.be.iter().chain([&point.alpha]).chain(&flow.strain).chain([&flow.alpha]);
             for (c, &value) in numbers.enumerate() {
@@ -359,16 +360,12 @@ impl<R: DeviceReal> Compute for Gpu<R> {
 /// `[slot][point]`.
 fn read_rows<R: DeviceReal>(slot: usize, answer: &[R], status: &[u32], mesh: &Mesh) -> Vec<Rows<f64>> {
     let points = mesh.contact_nodes.len();
-    let component = |c: usize, k: usize| answer[(slot * CONTACT_ANSWER + c) * points + k].to_f64();
+    let component = |c: usize, k: usize| answer[(slot * ROWS + c) * points + k].to_f64();
     let of_point = |k: usize| {
         let code = status[slot * points + k];
         let row = |first: usize| std::array::from_fn(|j| component(first + j, k));
         Rows {
-            status: match code % 4 {
-                0 => Status::Open,
-                1 => Status::Stick,
-                _ => Status::Slip,
-            },
+            status: status_of(code % 4),
             residual: row(0),
             force_rows: [row(3), row(6), row(9)],
             displacement_rows: [row(12), row(15), row(18)],

@@ -9,21 +9,21 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::block_plan::BlockPlan;
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
+use super::dispatch::{Dispatch, Evaluation, outcomes};
 use super::error::GpuError;
-use super::iterate::Iterates;
-use super::iterate::arrays::{Kept, Kernels as OfIterates, Told};
-use super::linear::{Linear, Plan, Right};
+use super::iterate::arrays::Kept;
+use super::iterate::kernels::Iterates;
+use super::layout::{HISTORY, ROWS, STATE};
+use super::linear::plan::Plan;
+use super::linear::solver::{Answers, Linear, Right};
 use super::pipelines::Recorder;
-use super::pools::PoolBytes;
-use super::resident::{Connectivity, HISTORY, Resident, STATE, Sizes};
-use super::scratch::{CONTACT_ANSWER, Dimensions, Kernels, Scratch};
-use super::shader_sources::Precision;
+use super::resident::{Connectivity, Resident, Sizes};
+use super::room::Room;
+use super::scratch::{Dimensions, Kernels, Scratch};
+use super::source::Precision;
 use super::tangents::Tangents;
 use crate::compute::gather::GatherPlan;
-use crate::compute::linear::SideReport;
-use crate::compute::{CaseModel, ComputeError, Fault, Outcome};
-use crate::element::hex8::Invalid;
-use crate::material::Refusal;
+use crate::compute::{CaseModel, ComputeError, Outcome};
 
 /// The arrays and kernels of a batch.
 #[derive(Debug)]
@@ -56,19 +56,6 @@ pub struct Parts {
     pub iterates: bool,
 }
 
-/// What a batch evaluates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Evaluation {
-    /// Internal forces.
-    InternalForce,
-    /// Tangents.
-    Tangent,
-    /// Contact rows.
-    Contact,
-    /// States at the end of a step and their energies, what a commit computes.
-    Update,
-}
-
 /// Upper blocks of tangents, in the precision in which they are computed.
 #[derive(Clone, Debug)]
 pub enum UpperBlocks<R> {
@@ -88,34 +75,6 @@ impl<R: DeviceReal> UpperBlocks<R> {
     }
 }
 
-/// Solutions `[slot][component][node]` of one side, and how they went by slot.
-pub type Answers = (Vec<f32>, Vec<SideReport>);
-
-/// Some of a call's requests, served by one dispatch.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Dispatch {
-    pub(super) group: usize,
-    /// Indices of the requests, in the order of their slots.
-    pub requests: Vec<usize>,
-    /// Their cases, counted from the first of the group.
-    pub(super) cases: Vec<usize>,
-}
-
-/// What the user should know where an array in a kernel holds fewer cases than there are; none
-/// where it holds all, of which the widest takes so many bytes each.
-fn cut_by_bindings(context: &GpuContext, cases: usize, widest: u64) -> Result<Option<String>, GpuError> {
-    let chunks = context.chunks_of_bindings("an evaluation", cases, widest)?;
-    let most = chunks.iter().map(|chunk| chunk.count).max().unwrap_or(cases);
-    let note = || {
-        let mib = context.adapter().max_binding.min(context.adapter().max_buffer) as f64 / f64::from(1 << 20);
-        let name = &context.adapter().name;
-        format!("a kernel of {name} sees {mib} MiB of an array: of {cases} cases of a batch no more than {most} go at a time")
-    };
-    let note = (most < cases).then(note);
-    note.iter().for_each(|note| log::info!("{note}"));
-    Ok(note)
-}
-
 impl<R: DeviceReal> Batch<R> {
     /// Sends a batch of cases of one connectivity (there is at least one) and compiles its kernels.
     ///
@@ -130,77 +89,25 @@ impl<R: DeviceReal> Batch<R> {
         let linear_plan = Plan::new(&mesh, &gather.pattern, &plan.source, plan.blocks());
         let connectivity = Connectivity::new(&context, &mesh, &plan)?;
         let sizes = connectivity.sizes;
-        let (widest, _) = sizes.resident_bytes::<R>();
-        let chunks = context.chunks_of_bindings("the states of a case", models.len(), widest)?;
+        let chunks = context.chunks_of_bindings("the states of a case", models.len(), sizes.resident_bytes::<R>().0)?;
+        let of = |first: usize, count: usize| &models[first..first + count];
         let residents = chunks
             .iter()
-            .map(|c| Resident::new(&context, sizes, c.first, &models[c.first..c.first + c.count]))
+            .map(|c| Resident::new(&context, sizes, c.first, of(c.first, c.count)))
             .collect::<Result<Vec<_>, _>>()?;
-        let tangents = Tangents::<R>::bytes(sizes, in_single);
-        let of_cases = tangents.of_case * models.len() as u64;
-        // What comes down at a time: of every slot what a trial finds, and its tangent where the
-        // host solves; of one case its state, and its tangent after a linear solve that stalled.
-        let answers = (size_of::<R>() * (3 * sizes.nodes + CONTACT_ANSWER * sizes.contact_points)) as u64;
-        let of_state = (size_of::<R>() * HISTORY * sizes.points()) as u64;
-        let once = of_state.max(tangents.blocks);
-        let own = Scratch::<R>::bytes(sizes) + tangents.of_slot;
-        let needs = |linear: Option<&Plan>| {
-            let (widest, pools) = PoolBytes::new::<R>(sizes, &tangents, linear).widest_and_all();
-            let (array, sum) = linear.map_or((0, 0), Plan::bytes);
-            let down = if linear.is_some() { answers } else { answers.max(tangents.blocks) };
-            (widest.max(array), own + pools + sum + down)
-        };
-        let mut notes = Vec::new();
-        let fits = linear_plan.as_ref().map_or(Ok(()), |plan| {
-            let ((widest, all), lists) = (needs(Some(plan)), plan.shared_bytes());
-            let what = "the linear solver of one case";
-            context.has_room(what, all + of_cases + once + lists)?;
-            context.chunks(what, 1, widest, 0).map(drop)
-        });
-        let linear_plan = match fits {
-            Err(error) if models.len() == 1 => {
-                let note = format!("the linear systems are solved on the CPU: {error}");
-                log::info!("{note}");
-                notes.push(note);
-                None
-            }
-            // Fewer cases have it.
-            Err(error) => return Err(error.into()),
-            Ok(()) => linear_plan,
-        };
-        let (widest, mut all) = needs(linear_plan.as_ref());
-        let mut keeps = parts.iterates && linear_plan.is_some();
-        if keeps && models.len() == 1 && R::PRECISION == Precision::F32 {
-            // What is missing here costs speed alone.
-            let steps = Kept::<R>::bytes(sizes) + Told::<R>::bytes(sizes);
-            if let Err(error) = context.has_room("the steps of one case", all + of_cases + steps + once) {
-                let note = format!("steps are made on the CPU, with tangents from the device: {error}");
-                log::info!("{note}");
-                notes.push(note);
-                keeps = false;
-            }
-        }
-        let of_kept = if keeps { Kept::<R>::bytes(sizes) * models.len() as u64 } else { 0 };
-        if keeps {
-            all += Told::<R>::bytes(sizes);
-        }
-        context.has_room("an evaluation of one case", all + of_cases + of_kept + once)?;
+        let mut room = Room::new::<R>(&context, sizes, models.len(), in_single);
+        room.place_linear(linear_plan)?;
+        room.place_iterates(parts.iterates)?;
         let kept = residents
             .iter()
-            .filter(|_| keeps)
-            .map(|r| Kept::new(&context, sizes, r, &models[r.first..r.first + r.count]))
+            .filter(|_| room.keeps)
+            .map(|r| Kept::new(&context, sizes, r, of(r.first, r.count)))
             .collect::<Result<Vec<_>, _>>()?;
-        let most = chunks.iter().map(|c| c.count).max().unwrap_or(1);
-        // What the slots share is set aside while their number is found.
-        let lists = linear_plan.as_ref().map_or(0, Plan::shared_bytes);
-        let set_aside = context.budget.reserve("lists of the linear solver", lists + of_cases + once)?;
-        let slots = context.chunks("an evaluation", most, widest, all)?.iter().map(|c| c.count).max().unwrap_or(1);
-        drop(set_aside);
-        notes.extend(cut_by_bindings(&context, models.len(), widest.max(sizes.resident_bytes::<R>().0))?);
-        let pools = PoolBytes::new::<R>(sizes, &tangents, linear_plan.as_ref());
-        let scratch = Scratch::new(&context, sizes, (slots, pools))?;
+        let slots = room.slots(chunks.iter().map(|c| c.count).max().unwrap_or(1))?;
+        let scratch = Scratch::new(&context, sizes, (slots, room.pools()))?;
         let tangents = Tangents::new(&context, &connectivity, &scratch, &residents, models, (slots, in_single))?;
-        let linear = linear_plan
+        let Room { linear, notes, .. } = room;
+        let linear = linear
             .map(|plan| match &tangents {
                 Tangents::Same(set) => Linear::new(&context, &plan, (slots, &scratch.pools), set.blocks()),
                 Tangents::Single(single) => Linear::new(&context, &plan, (slots, &scratch.pools), single.set().blocks()),
@@ -210,31 +117,15 @@ impl<R: DeviceReal> Batch<R> {
             .into_iter()
             .map(|r| Kernels::new(&context, &connectivity, &r, &scratch).map(|k| (r, k)))
             .collect::<Result<_, GpuError>>()?;
-        let iterates = match linear.as_ref().filter(|_| keeps) {
-            Some(linear) => {
-                let told = Told::new(&context, sizes, slots)?;
-                let bound = |(kept, (resident, _)): (Kept<R>, &(Resident<R>, Kernels))| {
-                    let kernels = OfIterates::new(&context, &connectivity, resident, &scratch, linear, (&kept, &told))?;
-                    Ok((kept, kernels))
-                };
-                let groups = kept.into_iter().zip(&groups).map(bound).collect::<Result<_, GpuError>>()?;
-                Some(Iterates { groups, told })
+        let iterates = match &linear {
+            Some(linear) if !kept.is_empty() => {
+                let residents = groups.iter().map(|(resident, _)| resident);
+                Some(Iterates::new(&context, &connectivity, &scratch, linear, (slots, kept), residents)?)
             }
-            None => None,
+            _ => None,
         };
-        Ok(Self {
-            context,
-            connectivity,
-            plan,
-            groups,
-            scratch,
-            slots,
-            increments: Mutex::default(),
-            tangents,
-            linear,
-            iterates,
-            notes,
-        })
+        let increments = Mutex::default();
+        Ok(Self { context, connectivity, plan, groups, scratch, slots, increments, tangents, linear, iterates, notes })
     }
 
     /// The device.
@@ -435,10 +326,10 @@ impl<R: DeviceReal> Batch<R> {
         let (points, slots) = (self.sizes().contact_points, dispatch.cases.len());
         let mut list = self.context.record();
         self.append(dispatch, Evaluation::Contact, &mut list)?;
-        let mut answer = vec![R::ZERO; slots * CONTACT_ANSWER * points];
+        let mut answer = vec![R::ZERO; slots * ROWS * points];
         let mut status = vec![0; slots * points];
         let scratch = &self.scratch;
-        list.submit_and_read(&mut [scratch.contact_answer.read(0, &mut answer)?, scratch.contact_status.read(0, &mut status)?])?;
+        list.submit_and_read(&mut [scratch.contact_rows.read(0, &mut answer)?, scratch.contact_codes.read(0, &mut status)?])?;
         Ok((answer, status))
     }
 
@@ -540,27 +431,4 @@ fn same_bits<R: DeviceReal>(known: &[R], increments: &[R]) -> bool {
     known
         .get(..increments.len())
         .is_some_and(|known| bytemuck::cast_slice::<R, u8>(known) == bytemuck::cast_slice::<R, u8>(increments))
-}
-
-/// What a code in `first_invalid` stands for (see shaders/element/point.wgsl).
-fn fault(code: u32) -> Fault {
-    let (element, point, is_not_finite) = (code as usize / 32, code as usize / 2 % 8, code % 2 == 1);
-    Fault::of(
-        element,
-        match (code / 16 % 2, is_not_finite) {
-            (0, false) => Invalid::Inverted(point),
-            (0, true) => Invalid::NotFinite(point),
-            (_, false) => Invalid::Material(point, Refusal::Inverted),
-            (_, true) => Invalid::Material(point, Refusal::NotFinite),
-        },
-    )
-}
-
-/// How each slot went, from the first invalid point of each.
-pub(super) fn outcomes(first: &[u32]) -> Vec<Outcome> {
-    let outcome = |&code: &u32| match code {
-        u32::MAX => Outcome::Valid,
-        code => Outcome::Invalid(fault(code)),
-    };
-    first.iter().map(outcome).collect()
 }

@@ -1,11 +1,10 @@
 //! Typed arrays on the device, within a memory budget; reading back is proved fresh.
 
+use super::arguments::{Argument, Array, Extent};
 use super::context::{GpuContext, PATIENCE};
 use super::error::GpuError;
 use super::memory::{Reservation, Staging};
-use super::moves::{Argument, Array, Extent};
-use super::pools::ALIGNMENT;
-use super::shader_sources::Precision;
+use super::source::Precision;
 use crate::real::Real;
 use bytemuck::{Pod, cast_slice};
 use std::marker::PhantomData;
@@ -17,6 +16,9 @@ const UPLOAD_PIECE: usize = 32 << 20;
 /// Bytes behind the numbers in the staging buffer: the ticket, and padding to the alignment of
 /// mappings.
 const TICKET_BYTES: u64 = 16;
+
+/// A binding may begin at any multiple of this: Vulkan lets no driver ask for more.
+pub const ALIGNMENT: u64 = 256;
 
 /// A precision in which kernels run.
 pub trait DeviceReal: Real + Pod {
@@ -164,10 +166,11 @@ impl<T> StorageBuffer<T> {
         Ok(StorageBuffer { raw, what, len, first, extent: Extent::Little, _reservation: None, _type: PhantomData })
     }
 
-    /// The whole array, as a kernel's argument.
-    pub fn binding(&self) -> Argument<'_> {
+    /// The whole array, as the argument that goes to this variable of a kernel.
+    pub fn named(&self, name: &'static str) -> Argument<'_> {
         let size = std::num::NonZeroU64::new(padded_bytes::<T>(self.len));
         Argument {
+            name,
             resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: &self.raw, offset: self.first, size }),
             array: Array { bytes: (self.len * size_of::<T>()) as u64, extent: self.extent },
         }

@@ -1,6 +1,8 @@
 //! Kernels that are compiled.
 
-use super::shader_sources::{Kernel, Precision};
+use super::kernel::Kernel;
+use super::reflect::Interface;
+use super::source::Precision;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
@@ -10,6 +12,7 @@ pub struct Pipeline {
     pub(super) raw: wgpu::ComputePipeline,
     pub(super) layout: wgpu::BindGroupLayout,
     pub(super) kernel: &'static Kernel,
+    pub(super) interface: &'static Interface,
     pub(super) precision: Precision,
 }
 

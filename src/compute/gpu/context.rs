@@ -9,7 +9,7 @@ use super::memory::{MemoryBudget, Staging};
 use super::meter::Meter;
 use super::pace::Pace;
 use super::profile::Profiling;
-use super::shader_sources::Precision;
+use super::source::Precision;
 use crate::compute::traffic::Traffic;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};

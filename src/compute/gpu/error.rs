@@ -61,6 +61,16 @@ pub enum GpuError {
         /// The compiler's words.
         message: String,
     },
+    /// An argument that a kernel cannot be bound with: a fault of this program.
+    #[error("kernel {kernel}: {flaw} `{name}`. This is a fault of the program, not of the input; --device cpu avoids it")]
+    Argument {
+        /// The kernel.
+        kernel: &'static str,
+        /// Name of the argument.
+        name: String,
+        /// What is wrong with it.
+        flaw: ArgumentFlaw,
+    },
     /// A pipeline, buffer or bind group that the driver or wgpu refused.
     #[error("{what}: {message}. This is a fault of the program or the driver, not of the input; --device cpu avoids it")]
     Rejected {
@@ -130,6 +140,20 @@ pub enum GpuError {
         /// The limit.
         seconds: u64,
     },
+}
+
+/// What is wrong with a kernel's argument.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+pub enum ArgumentFlaw {
+    /// A variable that the kernel uses has no argument.
+    #[error("no argument is given for its variable")]
+    Missing,
+    /// The kernel has no variable of this name.
+    #[error("it has no variable for the argument")]
+    Unknown,
+    /// Two arguments have this name.
+    #[error("there are two arguments for its variable")]
+    Doubled,
 }
 
 impl From<GpuError> for crate::compute::ComputeError {

@@ -1,25 +1,15 @@
 //! Material points on the device: the parameters of many materials, and the return mapping at every
 //! point of every case.
 
+use super::arguments::args;
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
+use super::layout::{ANSWER, PARAMETERS, RELATIVE, STATE, TANGENT};
 use super::pipelines::Bound;
 use super::shader_sources::RETURN_MAPPING;
 use crate::material::{Hardening, Material};
 use crate::real::Real;
-
-/// Parameters of a material in `material_parameters`.
-pub const PARAMETERS: usize = 9;
-/// Components of f - I, row by row.
-pub const RELATIVE: usize = 9;
-/// Components of the committed state: b_e_bar - I (xx, yy, zz, xy, yz, zx), alpha.
-pub const STATE: usize = 7;
-/// Components of an answer: deviatoric stress (6), b_e_bar - I (6), alpha, mu_bar, norm, normal
-/// (6), beta_1, beta_3, beta_4, delta_gamma, plastic work, U', U'', U, W.
-pub const ANSWER: usize = 30;
-/// Components of the tangent: c_ab at 6 a + b.
-pub const TANGENT: usize = 36;
 
 /// What became of a point; the numbers are those of `shaders/material/material.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,11 +85,11 @@ pub fn flatten<R: Real>(materials: &[Material<R>]) -> (Vec<R>, Vec<R>) {
 /// The block that `return_mapping.wgsl` calls Dimensions.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
-struct Dimensions {
-    cases: u32,
-    in_dispatch: u32,
-    points: u32,
-    reserved: u32,
+pub(super) struct Dimensions {
+    pub cases: u32,
+    pub in_dispatch: u32,
+    pub points: u32,
+    pub reserved: u32,
 }
 
 /// The answers of all points, arrays `[case][component][point]`.
@@ -136,7 +126,6 @@ impl<R: DeviceReal> ReturnMapping<R> {
     /// [`GpuError::NoDoublePrecision`], [`GpuError::TooLarge`], [`GpuError::OutOfBudget`], or the
     /// device's fault.
     pub fn new(context: &GpuContext, materials: &[Material<R>], points: usize) -> Result<Self, GpuError> {
-        let pipeline = context.pipeline(&RETURN_MAPPING, R::PRECISION)?;
         let cases = materials.len();
         let (parameters, table) = flatten(materials);
         let parameters = context.array("material parameters", &parameters)?;
@@ -150,18 +139,18 @@ impl<R: DeviceReal> ReturnMapping<R> {
         let status = context.zeros("point status", cases * points)?.each(cases);
         let active = context.zeros("active cases", cases)?;
         let dimensions = context.block("dimensions")?;
-        let arguments = vec![
-            dimensions.binding(),
-            active.binding(),
-            relative.binding(),
-            committed.binding(),
-            answer.binding(),
-            tangent.binding(),
-            status.binding(),
-            parameters.binding(),
-            table.binding(),
-        ];
-        let bound = context.bind(&pipeline, arguments)?;
+        let arguments = args! {
+            dimensions,
+            active_cases: active,
+            relative_gradient: relative,
+            committed,
+            answer,
+            tangent,
+            point_status: status,
+            material_parameters: parameters,
+            hardening_table: table,
+        };
+        let bound = context.bind(&RETURN_MAPPING, R::PRECISION, &arguments)?;
         Ok(Self { cases, points, relative, committed, answer, tangent, status, active, dimensions, bound })
     }
 

@@ -5,55 +5,10 @@
 //! share the whole. What a kernel does with an array is known from its source. Arrays that have not
 //! been declared do not count: a few numbers a slot, parameters of materials.
 
-use super::shader_sources::{Kernel, Precision};
-use super::validate::validate;
-
-/// How much of an array a dispatch touches.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Extent {
-    /// So little that it is not counted.
-    #[default]
-    Little,
-    /// All of it, however many slots there are.
-    Whole,
-    /// One of so many equal parts for each slot: there are as many as slots, cases or geometries,
-    /// or as iterates or vectors of these.
-    Each(u64),
-}
-
-/// An argument of a kernel.
-#[derive(Clone, Debug)]
-pub struct Argument<'a> {
-    pub(super) resource: wgpu::BindingResource<'a>,
-    pub(super) array: Array,
-}
-
-/// Its size.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Array {
-    /// Bytes of the array.
-    pub bytes: u64,
-    /// What of it is touched.
-    pub extent: Extent,
-}
-
-impl Array {
-    fn touched(&self, slots: u64) -> u64 {
-        match self.extent {
-            Extent::Little => 0,
-            Extent::Whole => self.bytes,
-            // Cases may share a geometry, which then moves once.
-            Extent::Each(parts) => self.bytes / parts.max(1) * slots.min(parts),
-        }
-    }
-}
-
-/// What a kernel does with an argument.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Use {
-    reads: bool,
-    writes: bool,
-}
+use super::arguments::Array;
+use super::kernel::Kernel;
+use super::layout::HISTORY;
+use super::reflect::Variable;
 
 /// What is not seen from a kernel's bindings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,66 +25,48 @@ enum But {
     PerVector,
 }
 
-/// Kernels by name, argument, and what there is to know.
-const BUT: &[(&str, usize, But)] = &[
+/// Kernels, their arguments, and what there is to know of these.
+const BUT: &[(&str, &[&str], But)] = &[
     // The largest alpha alone.
-    ("hex8_energies", 10, But::OneOf(super::resident::HISTORY as u64)),
+    ("hex8_energies", &["next_history"], But::OneOf(HISTORY as u64)),
     // Of elements with corners that hang.
-    ("gather_node_force", 2, But::Left),
+    ("gather_node_force", &["element_nodes"], But::Left),
     // The committed state, and not its last flow.
-    ("hex8_update", 12, But::OneOf(2)),
+    ("hex8_update", &["history"], But::OneOf(2)),
     // The contact's rows where points slide, and the diagonals for them.
-    ("assemble", 2, But::Left),
-    ("assemble", 5, But::Left),
+    ("assemble", &["diagonal", "rows"], But::Left),
     // What is fixed.
-    ("prescribe", 1, But::Left),
+    ("prescribe", &["rhs"], But::Left),
     // The inverses, and not what rounding takes.
-    ("smooth_start", 1, But::OneOf(2)),
+    ("smooth_start", &["inverse"], But::OneOf(2)),
     // The upper halves of the matrix.
-    ("smooth_step", 2, But::OneOf(2)),
-    ("cycle_residual", 2, But::OneOf(2)),
-    ("solve_coarsest", 2, But::OneOf(2)),
-    ("small_down", 2, But::OneOf(2)),
-    ("small_up", 2, But::OneOf(2)),
+    ("smooth_step", &["matrix"], But::OneOf(2)),
+    ("cycle_residual", &["matrix"], But::OneOf(2)),
+    ("solve_coarsest", &["matrix"], But::OneOf(2)),
+    ("small_down", &["matrix"], But::OneOf(2)),
+    ("small_up", &["matrix"], But::OneOf(2)),
     // The first step of a polynomial reads none.
-    ("smooth_step", 6, But::Once),
+    ("smooth_step", &["last_step"], But::Once),
     // Levels that one workgroup smooths stay in its caches.
-    ("solve_coarsest", 3, But::Once),
-    ("solve_coarsest", 6, But::Once),
-    ("small_down", 5, But::Once),
-    ("small_down", 6, But::Once),
-    ("small_down", 7, But::Once),
-    ("small_up", 6, But::Once),
-    ("small_up", 7, But::Once),
-    ("krylov_dots", 2, But::PerVector),
-    ("krylov_orthogonalise", 2, But::PerVector),
-    ("krylov_combine", 3, But::PerVector),
+    ("solve_coarsest", &["x", "last_step"], But::Once),
+    ("small_down", &["x", "last_step", "left"], But::Once),
+    ("small_up", &["last_step", "left"], But::Once),
+    ("krylov_dots", &["basis"], But::PerVector),
+    ("krylov_orthogonalise", &["basis"], But::PerVector),
+    ("krylov_combine", &["preconditioned"], But::PerVector),
     // What a trial begins with is one of these.
-    ("iterate_place", 5, But::Left),
-    ("iterate_place", 6, But::Left),
-    ("iterate_place", 7, But::Left),
-    ("iterate_place", 9, But::Left),
-    ("iterate_place", 10, But::Once),
+    ("iterate_place", &["committed", "before", "correction", "gap_at_start"], But::Left),
+    ("iterate_place", &["increments"], But::Once),
     // Of prescribed nodes and contact points.
-    ("iterate_contact", 11, But::Left),
-    ("iterate_contact", 12, But::Left),
-    ("iterate_measure", 5, But::Left),
-    ("iterate_measure", 7, But::Left),
-    ("iterate_measure", 8, But::Left),
-    ("iterate_measure", 9, But::Twice),
-    ("iterate_measure", 10, But::Left),
-    ("iterate_system", 5, But::Left),
-    ("iterate_system", 7, But::Left),
-    ("iterate_system", 8, But::Left),
-    ("iterate_expand", 5, But::Left),
-    ("iterate_expand", 7, But::Left),
-    ("iterate_expand", 8, But::Left),
-    ("iterate_expand", 10, But::Left),
-    ("iterate_expand", 14, But::Once),
+    ("iterate_contact", &["increments", "forces"], But::Left),
+    ("iterate_measure", &["committed", "weight", "increments", "rows"], But::Left),
+    ("iterate_measure", &["forces"], But::Twice),
+    ("iterate_system", &["committed", "weight", "increments"], But::Left),
+    ("iterate_expand", &["committed", "weight", "increments", "rows"], But::Left),
+    ("iterate_expand", &["correction"], But::Once),
     // From the second iteration of a step on.
-    ("iterate_unit", 7, But::Left),
-    ("iterate_commit", 8, But::Left),
-    ("iterate_commit", 9, But::Left),
+    ("iterate_unit", &["response"], But::Left),
+    ("iterate_commit", &["forces", "rows"], But::Left),
 ];
 
 /// Kernels that touch single nodes or points, or a number of entries that only the device knows:
@@ -146,85 +83,90 @@ const UNKNOWN: &[&str] = &[
     "iterate_land",
 ];
 
-/// What the entry point of a kernel does with each of its arguments; `None` if its source does not
-/// compile, or what it moves is not known.
-pub(super) fn uses(kernel: &Kernel) -> Option<Vec<Use>> {
-    if UNKNOWN.contains(&kernel.name) {
-        return None;
-    }
-    let checked = validate(&kernel.assemble(Precision::F32)).ok()?;
-    let of_entry = checked.info.get_entry_point(0);
-    let mut uses = vec![Use::default(); kernel.bindings.len()];
-    for (handle, variable) in checked.module.global_variables.iter() {
-        let at = variable.binding.map_or(usize::MAX, |place| place.binding as usize);
-        if let Some(of_argument) = uses.get_mut(at) {
-            let flags = of_entry[handle];
-            of_argument.reads = flags.contains(naga::valid::GlobalUse::READ);
-            of_argument.writes = flags.contains(naga::valid::GlobalUse::WRITE);
-        }
-    }
-    Some(uses)
+/// Bytes of a dispatch over these arrays, in the order of the kernel's variables, for so many slots
+/// whose Krylov bases have so many vectors; none where what it moves is not known.
+pub(super) fn bytes(kernel: &Kernel, arrays: &[Array], slots: usize, vectors: usize) -> Option<u64> {
+    let variables = &kernel.interface().ok()?.variables;
+    let of = |(variable, array): (&Variable, &Array)| touched(kernel.name, variable, array, slots as u64, vectors as u64);
+    (!UNKNOWN.contains(&kernel.name)).then(|| variables.iter().zip(arrays).map(of).sum())
 }
 
-/// Bytes of a dispatch for so many slots, whose Krylov bases have so many vectors.
-pub(super) fn bytes(kernel: &str, uses: &[Use], arrays: &[Array], slots: usize, vectors: usize) -> u64 {
-    let slots = slots as u64;
+fn touched(kernel: &str, variable: &Variable, array: &Array, slots: u64, vectors: u64) -> u64 {
     if slots == 0 {
         return 0;
     }
-    let of_argument = |(at, (argument, array)): (usize, (&Use, &Array))| {
-        let touched = array.touched(slots);
-        let times = u64::from(argument.reads) + u64::from(argument.writes);
-        let but = BUT.iter().find(|(name, place, _)| *name == kernel && *place == at).map(|(_, _, but)| *but);
-        match but {
-            None => times * touched,
-            Some(But::Left) => 0,
-            Some(But::Once) => touched,
-            Some(But::Twice) => 2 * times * touched,
-            Some(But::OneOf(components)) => times * touched / components,
-            Some(But::PerVector) => times * touched * vectors as u64,
-        }
-    };
-    uses.iter().zip(arrays).enumerate().map(of_argument).sum()
+    let touched = array.touched(slots);
+    let times = u64::from(variable.reads) + u64::from(variable.writes);
+    let is_of = |name: &str, arguments: &[&str]| name == kernel && arguments.contains(&variable.name.as_str());
+    match BUT.iter().find(|(name, arguments, _)| is_of(name, arguments)).map(|(_, _, but)| *but) {
+        None => times * touched,
+        Some(But::Left) => 0,
+        Some(But::Once) => touched,
+        Some(But::Twice) => 2 * times * touched,
+        Some(But::OneOf(components)) => times * touched / components,
+        Some(But::PerVector) => times * touched * vectors,
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::arguments::Extent;
+    use super::super::kernels::KERNELS;
     use super::super::linear::sources::{KRYLOV_DOTS, SMOOTH_STEP};
-    use super::super::shader_sources::{HEX8_JACOBIAN, KERNELS};
+    use super::super::reflect::Binding;
+    use super::super::shader_sources::HEX8_JACOBIAN;
     use super::*;
 
+    fn variable(name: &str, reads: bool, writes: bool) -> Variable {
+        Variable { name: name.to_owned(), binding: 0, kind: Binding::ReadWrite, reads, writes }
+    }
+
     #[test]
-    fn what_is_said_of_kernels_is_of_kernels_that_there_are() {
-        for name in BUT.iter().map(|(name, _, _)| name).chain(UNKNOWN) {
-            assert!(KERNELS.iter().any(|kernel| kernel.name == *name), "{name}");
+    fn what_is_said_of_kernels_is_of_kernels_and_arguments_that_there_are() {
+        let kernel = |name: &str| *KERNELS.iter().find(|kernel| kernel.name == name).unwrap_or_else(|| panic!("{name}"));
+        assert!(UNKNOWN.iter().all(|name| kernel(name).interface().is_ok()));
+        for (name, arguments, _) in BUT {
+            let variables = &kernel(name).interface().unwrap().variables;
+            for argument in *arguments {
+                let found = variables.iter().find(|variable| variable.name == *argument);
+                assert!(found.is_some_and(|variable| variable.reads || variable.writes), "{name} {argument}");
+                let said = BUT.iter().filter(|(other, arguments, _)| other == name && arguments.contains(argument));
+                assert_eq!(said.count(), 1, "{name} {argument}");
+            }
         }
-        for &(name, at, _) in BUT {
-            let kernel = KERNELS.iter().find(|kernel| kernel.name == name).unwrap();
-            let of_argument = uses(kernel).unwrap()[at];
-            assert!(of_argument.reads || of_argument.writes, "{name} {at}");
-        }
-        assert!(KERNELS.iter().all(|kernel| uses(kernel).is_some() != UNKNOWN.contains(&kernel.name)));
+        let known = |kernel: &Kernel| bytes(kernel, &[], 1, 0).is_some();
+        assert!(KERNELS.iter().all(|kernel| known(kernel) != UNKNOWN.contains(&kernel.name)));
     }
 
     #[test]
     fn arguments_count_as_they_are_used() {
-        let (read, write) = (Use { reads: true, writes: false }, Use { reads: false, writes: true });
-        // Volumes are bound to every kernel of the element, and not read by this one.
-        let jacobian = uses(&HEX8_JACOBIAN).unwrap();
-        assert_eq!((jacobian[4], jacobian[6], jacobian[7]), (Use::default(), read, write));
-        let step = uses(&SMOOTH_STEP).unwrap();
-        assert_eq!((step[6], step[7]), (Use { reads: true, writes: true }, write));
+        let of = |kernel: &Kernel, name: &str| {
+            let found = kernel.interface().unwrap().variables.iter().find(|variable| variable.name == name).cloned();
+            found.map(|variable| (variable.reads, variable.writes))
+        };
+        // Volumes are declared for every kernel of the element, and not read by this one.
+        assert_eq!(
+            ["volume", "increment", "jacobian"].map(|name| of(&HEX8_JACOBIAN, name)),
+            [None, Some((true, false)), Some((false, true))]
+        );
+        assert_eq!(["last_step", "next"].map(|name| of(&SMOOTH_STEP, name)), [Some((true, true)), Some((false, true))]);
 
         let each = |bytes, parts| Array { bytes, extent: Extent::Each(parts) };
-        let arrays = [each(800, 8), Array { bytes: 50, extent: Extent::Whole }, each(7, 1), Array::default()];
-        let both = Use { reads: true, writes: true };
-        assert_eq!(bytes("narrow", &[both, read, write, read], &arrays, 3, 0), 2 * 300 + 50 + 7);
-        assert_eq!(bytes("narrow", &[both, read, write, read], &arrays, 0, 0), 0);
+        let count = |name, reads, writes, array| touched("narrow", &variable(name, reads, writes), &array, 3, 0);
+        assert_eq!(count("wide", true, true, each(800, 8)), 2 * 300);
+        assert_eq!(count("wide", true, false, Array { bytes: 50, extent: Extent::Whole }), 50);
+        assert_eq!(count("copy", false, true, each(7, 1)), 7);
+        assert_eq!(count("wide", true, false, Array::default()), 0);
+        assert_eq!(touched("narrow", &variable("wide", true, true), &each(800, 8), 0, 0), 0);
         // three slots with four vectors of 20 bytes and a vector to be multiplied
-        let dots = uses(&KRYLOV_DOTS).unwrap();
-        let arrays = [Array::default(), Array::default(), each(20 * 8 * 31, 8 * 31), each(160, 8), Array::default()];
-        assert_eq!(bytes("krylov_dots", &dots, &arrays, 3, 4), 3 * 4 * 20 + 3 * 20);
-        assert_eq!(bytes("krylov_dots", &dots, &arrays, 3, 0), 3 * 20);
+        let by_name = |name: &str| match name {
+            "basis" => each(20 * 8 * 31, 8 * 31),
+            "w" => each(160, 8),
+            _ => Array::default(),
+        };
+        let variables = &KRYLOV_DOTS.interface().unwrap().variables;
+        let arrays: Vec<Array> = variables.iter().map(|variable| by_name(&variable.name)).collect();
+        assert_eq!(bytes(&KRYLOV_DOTS, &arrays, 3, 4), Some(3 * 4 * 20 + 3 * 20));
+        assert_eq!(bytes(&KRYLOV_DOTS, &arrays, 3, 0), Some(3 * 20));
     }
 }

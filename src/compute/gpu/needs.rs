@@ -3,9 +3,9 @@
 //! The needs are read from the sources of [`KERNELS`] as naga reads them, so that a kernel which is
 //! added or grows needs nothing here.
 
-use super::shader_sources::{Binding, KERNELS, Kernel, Precision};
-use super::validate::{Checked, validate};
-use naga::AddressSpace;
+use super::kernel::Kernel;
+use super::kernels::KERNELS;
+use super::reflect::Binding;
 use std::fmt;
 use std::sync::OnceLock;
 
@@ -70,30 +70,15 @@ const KINDS: [(&str, OfLimits); 5] = [
 /// What a kernel takes; nothing of a source that is not valid, which is an error when it is
 /// compiled.
 fn taken(kernel: &Kernel) -> Limits {
-    let uniform = kernel.bindings.iter().filter(|binding| matches!(binding, Binding::Uniform)).count();
-    let mut taken = Limits {
-        // What is bound counts, used or not.
-        storage_buffers: (kernel.bindings.len() - uniform) as u64,
+    let Ok(interface) = kernel.interface() else { return Limits::default() };
+    let uniform = interface.variables.iter().filter(|variable| variable.kind == Binding::Uniform).count();
+    Limits {
+        storage_buffers: (interface.variables.len() - uniform) as u64,
         uniform_buffers: uniform as u64,
-        threads: kernel.workgroup.into(),
-        ..Limits::default()
-    };
-    // Numbers in double precision take the most.
-    let Ok(Checked { module, info }) = validate(&kernel.assemble(Precision::F64)) else { return taken };
-    // Files that kernels share declare more than each of them uses.
-    let used = info.get_entry_point(0);
-    for (_, variable) in module.global_variables.iter().filter(|(handle, _)| !used[*handle].is_empty()) {
-        let bytes = || u64::from(module.types[variable.ty].inner.try_size(module.to_ctx()).unwrap_or(u32::MAX));
-        match variable.space {
-            AddressSpace::Uniform => taken.uniform_bytes = taken.uniform_bytes.max(bytes()),
-            AddressSpace::WorkGroup => taken.shared_bytes += bytes(),
-            _ => {}
-        }
+        uniform_bytes: interface.uniform_bytes,
+        threads: interface.workgroup.into(),
+        shared_bytes: interface.shared_bytes,
     }
-    for entry in &module.entry_points {
-        taken.threads = taken.threads.max(entry.workgroup_size.iter().map(|&threads| u64::from(threads)).product());
-    }
-    taken
 }
 
 fn most(kernels: &[&'static Kernel]) -> Vec<Need> {
@@ -120,11 +105,11 @@ pub fn unmet(limits: &Limits) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compute::gpu::shader_sources::Source;
+    use crate::compute::gpu::source::Source;
 
-    static SHARING: Kernel = Kernel {
-        name: "sharing",
-        sources: &[Source {
+    static SHARING: Kernel = Kernel::new(
+        "sharing",
+        &[Source {
             path: "tests",
             text: "
 struct Block { a: vec4<u32>, b: real }
@@ -138,9 +123,7 @@ fn sharing(@builtin(local_invocation_index) i: u32) {
 }
 ",
         }],
-        bindings: &[Binding::Uniform, Binding::ReadWrite],
-        workgroup: 32,
-    };
+    );
 
     #[test]
     fn a_kernels_needs_are_those_of_its_source() {

@@ -1,12 +1,14 @@
 //! Compiling kernels once, and running them.
 
+use super::arguments::Argument;
 use super::buffers::{Read, StorageBuffer};
 use super::compiled::Pipeline;
 use super::context::GpuContext;
 use super::error::GpuError;
-use super::moves::{Argument, Array};
+use super::kernel::Kernel;
 use super::profile::{Moved, Stamps};
-use super::shader_sources::{Assembled, Binding, Kernel, Precision};
+use super::reflect::{Binding, Variable};
+use super::source::{Assembled, Precision};
 use super::validate::validate;
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
@@ -26,7 +28,7 @@ pub struct Bound {
 impl Bound {
     /// Workgroups of so many threads.
     pub fn groups(&self, threads: usize) -> usize {
-        threads.div_ceil(self.pipeline.kernel.workgroup as usize)
+        threads.div_ceil(self.pipeline.interface.workgroup as usize)
     }
 }
 
@@ -69,8 +71,9 @@ impl GpuContext {
     }
 
     fn compile(&self, kernel: &'static Kernel, source: &Assembled) -> Result<Pipeline, GpuError> {
+        let interface = kernel.interface()?;
         let module = self.module(kernel.name, source)?;
-        let entries: Vec<wgpu::BindGroupLayoutEntry> = (0u32..).zip(kernel.bindings).map(layout_entry).collect();
+        let entries: Vec<wgpu::BindGroupLayoutEntry> = interface.variables.iter().map(layout_entry).collect();
         let label = Some(kernel.name);
         self.scoped(kernel.name, || {
             let layout = self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
@@ -87,7 +90,7 @@ impl GpuContext {
                 compilation_options: Default::default(),
                 cache: None,
             });
-            Pipeline { raw, layout, kernel, precision: source.precision }
+            Pipeline { raw, layout, kernel, interface, precision: source.precision }
         })
     }
 
@@ -118,25 +121,22 @@ impl GpuContext {
         })
     }
 
-    /// Binds arguments to a kernel, in the order of [`Kernel::bindings`].
+    /// Binds arguments to a kernel in one precision, each to the variable of its name.
     ///
     /// # Errors
-    /// [`GpuError::Length`] for a wrong number of arguments, [`GpuError::Rejected`], or the
-    /// device's fault.
-    pub fn bind(&self, pipeline: &Arc<Pipeline>, arguments: Vec<Argument<'_>>) -> Result<Bound, GpuError> {
-        let kernel = pipeline.kernel;
-        if arguments.len() != kernel.bindings.len() {
-            let what = format!("the argument list of {}", kernel.name);
-            return Err(GpuError::Length { what, expected: kernel.bindings.len(), given: arguments.len() });
-        }
-        let arrays: Vec<Array> = arguments.iter().map(|argument| argument.array).collect();
-        let resources = arguments.into_iter().map(|argument| argument.resource);
-        let entries: Vec<wgpu::BindGroupEntry<'_>> =
-            (0u32..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
-        let descriptor = wgpu::BindGroupDescriptor { label: Some(kernel.name), layout: &pipeline.layout, entries: &entries };
-        let group = self.scoped(kernel.name, || self.device.create_bind_group(&descriptor))?;
-        let moved = self.moved(kernel, pipeline.precision, arrays);
-        Ok(Bound { pipeline: Arc::clone(pipeline), group, moved })
+    /// [`GpuError::Argument`] for one that is missing, unknown or there twice; as
+    /// [`GpuContext::pipeline`].
+    pub fn bind(&self, kernel: &'static Kernel, precision: Precision, arguments: &[Argument<'_>]) -> Result<Bound, GpuError> {
+        let pipeline = self.pipeline(kernel, precision)?;
+        let (interface, kernel) = (pipeline.interface, pipeline.kernel.name);
+        let arguments = interface.in_order(kernel, arguments)?;
+        let entries: Vec<wgpu::BindGroupEntry<'_>> = std::iter::zip(&interface.variables, &arguments)
+            .map(|(variable, argument)| wgpu::BindGroupEntry { binding: variable.binding, resource: argument.resource.clone() })
+            .collect();
+        let descriptor = wgpu::BindGroupDescriptor { label: Some(kernel), layout: &pipeline.layout, entries: &entries };
+        let group = self.scoped(kernel, || self.device.create_bind_group(&descriptor))?;
+        let moved = self.moved(&pipeline, arguments.iter().map(|argument| argument.array).collect());
+        Ok(Bound { pipeline, group, moved })
     }
 
     fn encoder(&self) -> wgpu::CommandEncoder {
@@ -318,14 +318,14 @@ impl Recorder<'_> {
     }
 }
 
-fn layout_entry((binding, kind): (u32, &Binding)) -> wgpu::BindGroupLayoutEntry {
-    let ty = match kind {
+fn layout_entry(variable: &Variable) -> wgpu::BindGroupLayoutEntry {
+    let ty = match variable.kind {
         Binding::Uniform => wgpu::BufferBindingType::Uniform,
         Binding::Read => wgpu::BufferBindingType::Storage { read_only: true },
         Binding::ReadWrite => wgpu::BufferBindingType::Storage { read_only: false },
     };
     wgpu::BindGroupLayoutEntry {
-        binding,
+        binding: variable.binding,
         visibility: wgpu::ShaderStages::COMPUTE,
         ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
         count: None,

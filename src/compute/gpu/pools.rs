@@ -5,34 +5,20 @@
 //! of which there may be some between two lists of Krylov iterations. So Krylov vectors may lie
 //! where elements were, but not where stresses come.
 
-use super::buffers::{DeviceReal, StorageBuffer};
+use super::buffers::{ALIGNMENT, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
-use super::linear::Plan;
-use super::resident::{HISTORY, Sizes};
-use super::scratch::STRESS;
-use super::tangents::Bytes;
-
-/// A binding may begin at any multiple of this: Vulkan lets no driver ask for more.
-pub const ALIGNMENT: u64 = 256;
 
 /// Bytes of a slot's share of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PoolBytes {
-    vectors: u64,
-    blocks: u64,
+    /// Of [`Pools::vectors`].
+    pub vectors: u64,
+    /// Of [`Pools::blocks`].
+    pub blocks: u64,
 }
 
 impl PoolBytes {
-    /// Of a slot with these tangents, and if linear systems are solved with what that takes.
-    pub fn new<R: DeviceReal>(sizes: Sizes, tangents: &Bytes, linear: Option<&Plan>) -> Self {
-        let numbers = |components: usize| (components * sizes.points() * size_of::<R>()) as u64;
-        Self {
-            vectors: tangents.elements.max(numbers(HISTORY)).max(linear.map_or(0, Plan::krylov_bytes)),
-            blocks: tangents.blocks.max(numbers(STRESS)).max(linear.map_or(0, Plan::product_bytes)),
-        }
-    }
-
     /// The wider one, and both, of a slot; with what the last binding's alignment may take, of
     /// which all slots together need one.
     pub fn widest_and_all(&self) -> (u64, u64) {

@@ -1,7 +1,7 @@
 //! Times of kernels: a pair of timestamps around every dispatch, summed by kernel.
 //!
-//! Off unless [`GpuContext::with_profile`] asks for it, and then nothing is submitted, waited for
-//! or moved that would not be otherwise. When it is on, every list of kernels ends with its
+//! Off unless a device is made one `with_profile`, and then nothing is submitted, waited for or
+//! moved that would not be otherwise. When it is on, every list of kernels ends with its
 //! timestamps, which are read after the list has been waited for anyway; the account of the traffic
 //! leaves them out.
 
@@ -9,15 +9,15 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use super::context::{GpuContext, PATIENCE};
-use super::error::GpuError;
-use super::moves::{Array, Use, bytes, uses};
-use super::shader_sources::{Kernel, Precision};
+use super::arguments::Array;
+use super::compiled::Pipeline;
+use super::moves::bytes;
+use super::source::Precision;
 
 /// Dispatches whose timestamps a set holds.
-const DISPATCHES: usize = wgpu::QUERY_SET_MAX_QUERIES as usize / 2;
+pub(super) const DISPATCHES: usize = wgpu::QUERY_SET_MAX_QUERIES as usize / 2;
 /// Bytes of a timestamp.
-const STAMP: u64 = size_of::<u64>() as u64;
+pub(super) const STAMP: u64 = size_of::<u64>() as u64;
 
 /// What a kernel came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,31 +53,30 @@ pub struct KernelTimes {
 }
 
 #[derive(Debug, Default)]
-struct Sum {
+pub(super) struct Sum {
     dispatches: u64,
     seconds: f64,
-    bytes: Option<u64>,
+    pub bytes: Option<u64>,
 }
 
 #[derive(Debug, Default)]
-struct Sums {
-    kernels: BTreeMap<(&'static str, Precision), Sum>,
+pub(super) struct Sums {
+    pub kernels: BTreeMap<(&'static str, Precision), Sum>,
     unusable: u64,
     stamped: u64,
     read: u64,
-    first: Option<Instant>,
+    pub first: Option<Instant>,
     last: Option<Instant>,
 }
 
 /// The sums of a device and all its parts.
 #[derive(Debug, Default)]
 pub(super) struct Profile {
-    timed: bool,
+    pub timed: bool,
     /// Seconds of a tick.
-    period: f64,
-    sums: Mutex<Sums>,
-    uses: Mutex<BTreeMap<&'static str, Option<Arc<[Use]>>>>,
-    free: Mutex<Vec<Set>>,
+    pub period: f64,
+    pub sums: Mutex<Sums>,
+    pub free: Mutex<Vec<Set>>,
 }
 
 /// What a part of a device has of a profile.
@@ -85,50 +84,50 @@ pub(super) struct Profile {
 pub(super) struct Profiling {
     pub profile: Arc<Profile>,
     /// Lists that were sent and not waited for yet.
-    pending: Mutex<Vec<Stamps>>,
+    pub pending: Mutex<Vec<Stamps>>,
 }
 
 /// Queries, and the way of their answers to the host.
 #[derive(Debug)]
-struct Set {
-    queries: wgpu::QuerySet,
-    resolved: wgpu::Buffer,
-    mapped: wgpu::Buffer,
+pub(super) struct Set {
+    pub queries: wgpu::QuerySet,
+    pub resolved: wgpu::Buffer,
+    pub mapped: wgpu::Buffer,
 }
 
 /// A bound kernel as a profile knows it.
 #[derive(Debug)]
 pub(super) struct Moved {
-    kernel: (&'static str, Precision),
-    uses: Option<Arc<[Use]>>,
-    arrays: Vec<Array>,
+    pub pipeline: Arc<Pipeline>,
+    pub arrays: Vec<Array>,
 }
 
 impl Moved {
-    fn bytes(&self, slots: usize, vectors: usize) -> Option<u64> {
-        self.uses.as_ref().map(|uses| bytes(self.kernel.0, uses, &self.arrays, slots, vectors))
+    /// Its name and precision.
+    pub fn kernel(&self) -> (&'static str, Precision) {
+        (self.pipeline.kernel.name, self.pipeline.precision)
+    }
+
+    /// Bytes of a dispatch, where they are known.
+    pub fn bytes(&self, slots: usize, vectors: usize) -> Option<u64> {
+        bytes(self.pipeline.kernel, &self.arrays, slots, vectors)
     }
 }
 
 /// The timestamps of a list of kernels that is being made, or was sent.
 #[derive(Debug, Default)]
 pub(super) struct Stamps {
-    sets: Vec<Set>,
-    dispatches: Vec<((&'static str, Precision), Option<u64>)>,
+    pub sets: Vec<Set>,
+    pub dispatches: Vec<((&'static str, Precision), Option<u64>)>,
 }
 
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Profile {
-    /// How a kernel uses its arguments, found once.
-    fn uses(&self, kernel: &'static Kernel) -> Option<Arc<[Use]>> {
-        lock(&self.uses).entry(kernel.name).or_insert_with(|| uses(kernel).map(Into::into)).clone()
-    }
-
     /// Adds what a list dispatched, when it is sent.
-    fn sent(&self, stamps: &Stamps) {
+    pub fn sent(&self, stamps: &Stamps) {
         let mut sums = lock(&self.sums);
         for &(kernel, bytes) in &stamps.dispatches {
             let sum = sums.kernels.entry(kernel).or_default();
@@ -141,7 +140,7 @@ impl Profile {
     }
 
     /// Adds the timestamps of a list, two for each dispatch.
-    fn add(&self, stamps: &Stamps, ticks: &[u64]) {
+    pub fn add(&self, stamps: &Stamps, ticks: &[u64]) {
         let mut sums = lock(&self.sums);
         sums.last = Some(Instant::now());
         for ((kernel, _), pair) in stamps.dispatches.iter().zip(ticks.as_chunks::<2>().0) {
@@ -153,7 +152,8 @@ impl Profile {
         }
     }
 
-    fn times(&self) -> KernelTimes {
+    /// The sums up to now.
+    pub fn times(&self) -> KernelTimes {
         let sums = lock(&self.sums);
         let time = |(&(kernel, precision), sum): (&(&'static str, Precision), &Sum)| KernelTime {
             kernel,
@@ -172,7 +172,8 @@ impl Profile {
     }
 }
 
-fn add(sum: &mut Option<u64>, bytes: Option<u64>) {
+/// Adds bytes where they are known.
+pub(super) fn add(sum: &mut Option<u64>, bytes: Option<u64>) {
     if let Some(bytes) = bytes {
         *sum.get_or_insert_default() += bytes;
     }
@@ -183,146 +184,9 @@ fn seconds([begin, end]: [u64; 2], period: f64) -> Option<f64> {
     (begin != 0 && end >= begin).then(|| (end - begin) as f64 * period)
 }
 
-impl GpuContext {
-    /// The same with a sum of the times and bytes of every kernel that it or its parts run from now
-    /// on; before any kernel is bound. Without timestamps (TIMESTAMP_QUERY) dispatches and bytes
-    /// are summed alone.
-    pub fn with_profile(mut self) -> Self {
-        let timed = self.adapter().timestamps;
-        let period = 1e-9 * f64::from(self.queue.get_timestamp_period());
-        let profile = Arc::new(Profile { timed, period, ..Profile::default() });
-        self.profiling = Some(Profiling { profile, ..Profiling::default() });
-        self
-    }
-
-    /// The sums up to now; `None` unless [`GpuContext::with_profile`] asked for them.
-    pub fn kernel_times(&self) -> Option<KernelTimes> {
-        self.profiling.as_ref().map(|profiling| profiling.profile.times())
-    }
-
-    /// Whether there is a profile.
-    pub(super) fn is_profiled(&self) -> bool {
-        self.profiling.is_some()
-    }
-
-    /// The profile of a part of this device: the same sums.
-    pub(super) fn profile_of_part(&self) -> Option<Profiling> {
-        let profiling = self.profiling.as_ref()?;
-        Some(Profiling { profile: Arc::clone(&profiling.profile), ..Profiling::default() })
-    }
-
-    /// What is to be known of a kernel that is bound to `arrays`; nothing without a profile.
-    pub(super) fn moved(&self, kernel: &'static Kernel, precision: Precision, arrays: Vec<Array>) -> Option<Moved> {
-        let profiling = self.profiling.as_ref()?;
-        Some(Moved { kernel: (kernel.name, precision), uses: profiling.profile.uses(kernel), arrays })
-    }
-
-    /// Adds the bytes that a kernel has moved for `slots` whose Krylov bases have so many vectors,
-    /// where that is known only now.
-    pub(super) fn credit(&self, moved: Option<&Moved>, slots: usize, vectors: usize) {
-        if let (Some(profiling), Some(moved)) = (&self.profiling, moved) {
-            let mut sums = lock(&profiling.profile.sums);
-            add(&mut sums.kernels.entry(moved.kernel).or_default().bytes, moved.bytes(slots, vectors));
-        }
-    }
-
-    /// The timestamps of a list that begins.
-    pub(super) fn stamps(&self) -> Option<Stamps> {
-        let profiling = self.profiling.as_ref()?;
-        lock(&profiling.profile.sums).first.get_or_insert_with(Instant::now);
-        Some(Stamps::default())
-    }
-
-    /// Takes a dispatch for so many slots in, and says where its timestamps go.
-    ///
-    /// # Errors
-    /// [`GpuError::Rejected`], or the device's fault.
-    pub(super) fn stamp<'a>(
-        &self,
-        stamps: &'a mut Stamps,
-        moved: &Moved,
-        slots: usize,
-    ) -> Result<Option<wgpu::ComputePassTimestampWrites<'a>>, GpuError> {
-        let Some(Profiling { profile, .. }) = &self.profiling else { return Ok(None) };
-        let at = stamps.dispatches.len();
-        if profile.timed && at == DISPATCHES * stamps.sets.len() {
-            let free = lock(&profile.free).pop();
-            stamps.sets.push(match free {
-                Some(set) => set,
-                None => self.set_of_queries()?,
-            });
-        }
-        stamps.dispatches.push((moved.kernel, moved.bytes(slots, 0)));
-        let first = 2 * (at % DISPATCHES) as u32;
-        Ok(stamps.sets.last().map(|set| wgpu::ComputePassTimestampWrites {
-            query_set: &set.queries,
-            beginning_of_pass_write_index: Some(first),
-            end_of_pass_write_index: Some(first + 1),
-        }))
-    }
-
-    fn set_of_queries(&self) -> Result<Set, GpuError> {
-        let label = Some("timestamps");
-        let count = 2 * DISPATCHES as u32;
-        self.scoped("timestamps", || {
-            let buffer = |usage| {
-                let size = STAMP * u64::from(count);
-                self.device.create_buffer(&wgpu::BufferDescriptor { label, size, usage, mapped_at_creation: false })
-            };
-            Set {
-                queries: self.device.create_query_set(&wgpu::QuerySetDescriptor { label, ty: wgpu::QueryType::Timestamp, count }),
-                resolved: buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC),
-                mapped: buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST),
-            }
-        })
-    }
-
-    /// Takes in that a list was sent and not waited for.
-    pub(super) fn sent(&self, stamps: Option<Stamps>) {
-        if let (Some(profiling), Some(stamps)) = (&self.profiling, stamps) {
-            profiling.profile.sent(&stamps);
-            lock(&profiling.pending).push(stamps);
-        }
-    }
-
-    /// Reads the timestamps of a list that was waited for, and of those that were sent before it.
-    /// Those that cannot be read are counted so.
-    pub(super) fn waited_for(&self, stamps: Option<Stamps>, submission: &wgpu::SubmissionIndex) {
-        let (Some(profiling), Some(stamps)) = (&self.profiling, stamps) else { return };
-        self.sent(Some(stamps));
-        for stamps in std::mem::take(&mut *lock(&profiling.pending)) {
-            if let Some(ticks) = self.ticks(&stamps, submission) {
-                profiling.profile.add(&stamps, &ticks);
-                lock(&profiling.profile.free).extend(stamps.sets);
-            }
-        }
-    }
-
-    fn ticks(&self, stamps: &Stamps, submission: &wgpu::SubmissionIndex) -> Option<Vec<u64>> {
-        let mut ticks = Vec::with_capacity(2 * stamps.dispatches.len());
-        for (set, bytes) in stamps.sets.iter().zip(stamps.bytes_by_set()) {
-            let (report, outcome) = std::sync::mpsc::channel();
-            set.mapped.slice(..bytes).map_async(wgpu::MapMode::Read, move |result| {
-                // Whoever has given up does not listen any more.
-                let _ = report.send(result.is_ok());
-            });
-            let poll = wgpu::PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(PATIENCE) };
-            // Another thread that waits for the device may be the one that is told.
-            if self.device.poll(poll).is_err() || outcome.recv_timeout(PATIENCE) != Ok(true) {
-                return None;
-            }
-            let view = set.mapped.slice(..bytes).get_mapped_range().ok()?;
-            ticks.extend(view.as_chunks::<{ STAMP as usize }>().0.iter().map(|&word| u64::from_le_bytes(word)));
-            drop(view);
-            set.mapped.unmap();
-        }
-        Some(ticks)
-    }
-}
-
 impl Stamps {
     /// Bytes of the timestamps in each set.
-    fn bytes_by_set(&self) -> impl Iterator<Item = u64> {
+    pub fn bytes_by_set(&self) -> impl Iterator<Item = u64> {
         let all = self.dispatches.len();
         (0..self.sets.len()).map(move |i| 2 * STAMP * (all - DISPATCHES * i).min(DISPATCHES) as u64)
     }

@@ -6,6 +6,7 @@ use super::block_plan::BlockPlan;
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
+use super::layout::{COORDINATES, HISTORY, STATE};
 use super::material::flatten;
 use crate::compute::{CaseModel, ComputeError};
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction};
@@ -13,28 +14,22 @@ use crate::element::hex8::{Geometry, NODES, QUADRATURE_POINTS};
 use crate::material::Material;
 use crate::mesh::{Hanging, Mesh};
 
-/// Components of a point's state.
-pub const STATE: usize = super::material::STATE;
-/// Components of a point's committed state and of what flowed in its last step.
-pub const HISTORY: usize = 2 * STATE;
-/// Coordinates of an element's nodes.
-pub const COORDINATES: usize = 3 * NODES;
 /// Rows of hardening tables that there is room for, a material: those of the batch may be replaced.
 const TABLE_ROOM: usize = 64;
 /// The coefficient of friction that stands for full stick in `coulomb.wgsl`.
-const FULL_STICK: f64 = -1.0;
+pub(super) const FULL_STICK: f64 = -1.0;
 
 /// Numbers of a material, with those of its table.
 pub const MATERIAL_ROOM: usize = 32 + 3 * TABLE_ROOM;
 
 /// Of an entry of the nodes that an element names, as in `hanging.wgsl`: some corner of it hangs.
-const SOME_HANG: u32 = 1 << 29;
+pub(super) const SOME_HANG: u32 = 1 << 29;
 /// The bits that the first three entries have of the element's octant.
-const OCTANT_AT: u32 = 30;
+pub(super) const OCTANT_AT: u32 = 30;
 /// The bit of a corner that hangs.
-const HANGS_AT: u32 = 31;
+pub(super) const HANGS_AT: u32 = 31;
 /// Of an element in the list of a node, as in `node_force.wgsl`: some corner of it hangs.
-const HAS_HANGING: u32 = 1 << 31;
+pub(super) const HAS_HANGING: u32 = 1 << 31;
 
 /// Sizes that all cases of a batch share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

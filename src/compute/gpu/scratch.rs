@@ -1,24 +1,17 @@
 //! What dispatches of a batch make, slot by slot, and the kernels that make it.
 
+use super::arguments::{Argument, args};
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
-use super::moves::Argument;
+use super::kernel::Kernel;
+use super::layout::{HISTORY, ROWS, STRESS, TRIAL};
 use super::pipelines::Bound;
 use super::pools::{PoolBytes, Pools};
-use super::resident::{Connectivity, HISTORY, Resident, Sizes};
+use super::resident::{Connectivity, Resident, Sizes};
 use super::shader_sources::{
-    CONTACT_POINTS, GATHER_NODE_FORCE, HEX8_BEGIN_STEP, HEX8_ENERGIES, HEX8_INTERNAL_FORCE, HEX8_JACOBIAN, HEX8_UPDATE, Kernel,
+    CONTACT_POINTS, GATHER_NODE_FORCE, HEX8_BEGIN_STEP, HEX8_ENERGIES, HEX8_INTERNAL_FORCE, HEX8_JACOBIAN, HEX8_UPDATE,
 };
-
-/// Numbers of an element's tangent in `tangent.wgsl`.
-pub const ELEMENT_BLOCKS: usize = 9 * crate::element::hex8::PAIRS;
-/// Components of the stresses that a force is gathered from.
-pub const STRESS: usize = 9;
-/// Numbers that go to a contact point: force, increment.
-pub const CONTACT_TRIAL: usize = 6;
-/// Numbers that come from it: residual, force rows, displacement rows.
-pub const CONTACT_ANSWER: usize = 21;
 
 /// The block that `batch.wgsl` calls Dimensions.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -50,8 +43,8 @@ pub struct Scratch<R> {
     pub(super) point_work: StorageBuffer<R>,
     pub energies: StorageBuffer<R>,
     pub(super) contact_trial: StorageBuffer<R>,
-    pub(super) contact_answer: StorageBuffer<R>,
-    pub(super) contact_status: StorageBuffer<u32>,
+    pub(super) contact_rows: StorageBuffer<R>,
+    pub(super) contact_codes: StorageBuffer<u32>,
 }
 
 impl<R: DeviceReal> Scratch<R> {
@@ -71,9 +64,9 @@ impl<R: DeviceReal> Scratch<R> {
             pools,
             point_work: zeros("energies of points", 2 * points)?,
             energies: zeros("energies of elements", 3 * sizes.elements)?,
-            contact_trial: zeros("contact points", CONTACT_TRIAL * sizes.contact_points)?,
-            contact_answer: zeros("contact rows", CONTACT_ANSWER * sizes.contact_points)?,
-            contact_status: context.zeros("contact status", slots * sizes.contact_points)?.each(slots),
+            contact_trial: zeros("contact points", TRIAL * sizes.contact_points)?,
+            contact_rows: zeros("contact rows", ROWS * sizes.contact_points)?,
+            contact_codes: context.zeros("contact status", slots * sizes.contact_points)?.each(slots),
         })
     }
 
@@ -81,7 +74,7 @@ impl<R: DeviceReal> Scratch<R> {
     pub fn bytes(sizes: Sizes) -> u64 {
         let points = sizes.points();
         let all = (1 + 2) * points + 6 * sizes.nodes + 3 * sizes.elements;
-        let contact = (CONTACT_TRIAL + CONTACT_ANSWER + 1) * sizes.contact_points;
+        let contact = (TRIAL + ROWS + 1) * sizes.contact_points;
         ((all + contact + 16) * size_of::<R>()) as u64
     }
 }
@@ -100,44 +93,43 @@ pub struct Kernels {
 
 impl Kernels {
     pub fn new<R: DeviceReal>(c: &GpuContext, mesh: &Connectivity, r: &Resident<R>, s: &Scratch<R>) -> Result<Self, GpuError> {
-        let shape = [s.dimensions.binding(), s.active.binding()];
-        let element = [
-            mesh.element_nodes.binding(),
-            r.coordinates.binding(),
-            r.volume.binding(),
-            r.committed.binding(),
-            s.increment.binding(),
-        ];
-        let material = [r.parameters.binding(), r.table.binding()];
-        let at_points = [r.state.binding(), s.jacobian.binding(), s.first_invalid.binding()];
-        let bind = |kernel: &'static Kernel, parts: &[&[Argument<'_>]]| {
-            let pipeline = c.pipeline(kernel, R::PRECISION)?;
-            c.bind(&pipeline, parts.concat())
+        let shape = args! { dimensions: s.dimensions, active_cases: s.active };
+        let element = args! {
+            element_nodes: mesh.element_nodes,
+            coordinates: r.coordinates,
+            volume: r.volume,
+            committed: r.committed,
+            increment: s.increment,
         };
-        let gather = [mesh.node_start.binding(), mesh.node_entry.binding(), s.stress.binding(), s.force.binding()];
-        let energies = [
-            s.jacobian.binding(),
-            s.next_history.binding(),
-            s.point_work.binding(),
-            r.plastic_work.binding(),
-            s.energies.binding(),
-        ];
-        let contact = [
-            r.weight.binding(),
-            mesh.on_symmetry_plane.binding(),
-            r.friction.binding(),
-            r.gap.binding(),
-            s.contact_trial.binding(),
-            s.contact_answer.binding(),
-            s.contact_status.binding(),
-        ];
+        let material = args! { material_parameters: r.parameters, hardening_table: r.table };
+        let at_points = args! { state: r.state, jacobian: s.jacobian, first_invalid: s.first_invalid };
+        let bind = |kernel: &'static Kernel, parts: &[&[Argument<'_>]]| c.bind(kernel, R::PRECISION, &parts.concat());
         let at = |kernel, outputs: &[Argument<'_>]| bind(kernel, &[&shape, &element, &material, &at_points, outputs]);
+        let gather = args! { node_start: mesh.node_start, node_entry: mesh.node_entry, stress: s.stress, force: s.force };
+        let begin_step = args! { history: r.history, anticipated: r.anticipated, state: r.state };
+        let update = args! { history: r.history, next_history: s.next_history, point_work: s.point_work };
+        let energies = args! {
+            jacobian: s.jacobian,
+            next_history: s.next_history,
+            point_work: s.point_work,
+            work_at_start: r.plastic_work,
+            energies: s.energies,
+        };
+        let contact = args! {
+            weight: r.weight,
+            on_symmetry_plane: mesh.on_symmetry_plane,
+            friction: r.friction,
+            gap_at_start: r.gap,
+            trial: s.contact_trial,
+            rows: s.contact_rows,
+            codes: s.contact_codes,
+        };
         Ok(Self {
-            jacobian: bind(&HEX8_JACOBIAN, &[&shape, &element, &[s.jacobian.binding()]])?,
-            internal_force: at(&HEX8_INTERNAL_FORCE, &[s.stress.binding()])?,
+            jacobian: bind(&HEX8_JACOBIAN, &[&shape, &element, &args! { jacobian: s.jacobian }])?,
+            internal_force: at(&HEX8_INTERNAL_FORCE, &args! { stress: s.stress })?,
             node_force: bind(&GATHER_NODE_FORCE, &[&shape, &element, &gather])?,
-            begin_step: bind(&HEX8_BEGIN_STEP, &[&shape, &[r.history.binding(), r.anticipated.binding(), r.state.binding()]])?,
-            update: at(&HEX8_UPDATE, &[r.history.binding(), s.next_history.binding(), s.point_work.binding()])?,
+            begin_step: bind(&HEX8_BEGIN_STEP, &[&shape, &begin_step])?,
+            update: at(&HEX8_UPDATE, &update)?,
             energies: bind(&HEX8_ENERGIES, &[&shape, &element, &material, &energies])?,
             contact: bind(&CONTACT_POINTS, &[&shape, &contact])?,
         })

@@ -2,17 +2,16 @@
 //! Newton's residual decides what is a solution, the tangent only how fast it is found; the linear
 //! solver rounds it to single precision in any case.
 
-use super::batch::Dispatch;
+use super::arguments::args;
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
+use super::dispatch::Dispatch;
 use super::error::GpuError;
-use super::moves::Argument;
+use super::layout::{COORDINATES, ELEMENT_BLOCKS, STATE};
 use super::pipelines::{Bound, Recorder};
-use super::resident::{
-    COORDINATES, Connectivity, MATERIAL_ROOM, Resident, STATE, Sizes, replace_materials, send_materials, write_geometry,
-};
-use super::scratch::{ELEMENT_BLOCKS, Scratch};
-use super::shader_sources::{GATHER_TANGENT_BLOCKS, HEX8_JACOBIAN, HEX8_TANGENT, Kernel, NARROW};
+use super::resident::{Connectivity, MATERIAL_ROOM, Resident, Sizes, replace_materials, send_materials, write_geometry};
+use super::scratch::Scratch;
+use super::shader_sources::{GATHER_TANGENT_BLOCKS, HEX8_JACOBIAN, HEX8_TANGENT, NARROW};
 use crate::compute::{CaseModel, ComputeError};
 use crate::mesh::Mesh;
 
@@ -60,32 +59,32 @@ impl<T: DeviceReal> Set<T> {
         scratch: &Scratch<R>,
         inputs: &Inputs<'_, T>,
     ) -> Result<(), GpuError> {
-        let shape = [
-            scratch.dimensions.binding(),
-            scratch.active.binding(),
-            mesh.element_nodes.binding(),
-            inputs.coordinates.binding(),
-            inputs.volume.binding(),
-            inputs.committed.binding(),
-            inputs.increment.binding(),
-        ];
-        let point = [
-            inputs.parameters.binding(),
-            inputs.table.binding(),
-            inputs.state.binding(),
-            inputs.jacobian.binding(),
-            scratch.first_invalid.binding(),
-            self.elements.binding(),
-        ];
-        let gather = [mesh.block_start.binding(), mesh.block_entry.binding(), self.elements.binding(), self.blocks.binding()];
-        let bind = |kernel: &'static Kernel, arguments: &[Argument<'_>]| {
-            let pipeline = context.pipeline(kernel, T::PRECISION)?;
-            context.bind(&pipeline, arguments.to_vec())
+        let shape = args! { dimensions: scratch.dimensions, active_cases: scratch.active };
+        let element = args! {
+            element_nodes: mesh.element_nodes,
+            coordinates: inputs.coordinates,
+            volume: inputs.volume,
+            committed: inputs.committed,
+            increment: inputs.increment,
+            jacobian: inputs.jacobian,
+        };
+        let point = args! {
+            material_parameters: inputs.parameters,
+            hardening_table: inputs.table,
+            state: inputs.state,
+            first_invalid: scratch.first_invalid,
+            element_blocks: self.elements,
+        };
+        let gather = args! {
+            block_start: mesh.block_start,
+            block_entry: mesh.block_entry,
+            element_blocks: self.elements,
+            blocks: self.blocks,
         };
         self.groups.push(Kernels {
-            jacobian: bind(&HEX8_JACOBIAN, &[&shape[..], &[inputs.jacobian.binding()]].concat())?,
-            elements: bind(&HEX8_TANGENT, &[&shape[..], &point].concat())?,
-            blocks: bind(&GATHER_TANGENT_BLOCKS, &[&shape[..2], &gather].concat())?,
+            jacobian: context.bind(&HEX8_JACOBIAN, T::PRECISION, &[&shape[..], &element].concat())?,
+            elements: context.bind(&HEX8_TANGENT, T::PRECISION, &[&shape[..], &element, &point].concat())?,
+            blocks: context.bind(&GATHER_TANGENT_BLOCKS, T::PRECISION, &[&shape[..], &gather].concat())?,
         });
         Ok(())
     }
@@ -209,7 +208,6 @@ impl<R: DeviceReal> Tangents<R> {
         let mut set = Set::new(sizes, scratch, slots)?;
         let increment = context.zeros("increments in f32", slots * unknowns)?.each(slots);
         let jacobian = context.zeros("Jacobians in f32", slots * points)?.each(slots);
-        let pipeline = context.pipeline(&NARROW, R::PRECISION)?;
         let mut groups = Vec::with_capacity(residents.len());
         for r in residents {
             let (coordinates, volume) = r.geometry::<f32>(context, sizes, models)?;
@@ -234,9 +232,8 @@ impl<R: DeviceReal> Tangents<R> {
                 .zip(&shapes)
                 .zip(counts)
                 .map(|(((wide, copy), shape), count)| {
-                    let dispatch = [scratch.dimensions.binding(), scratch.active.binding()];
-                    let arrays = [shape.binding(), wide.binding(), copy.binding()];
-                    Ok((count, context.bind(&pipeline, [&dispatch[..], &arrays].concat())?))
+                    let arguments = args! { dimensions: scratch.dimensions, active_cases: scratch.active, shape, wide, copy };
+                    Ok((count, context.bind(&NARROW, R::PRECISION, &arguments)?))
                 })
                 .collect::<Result<Vec<_>, GpuError>>()?;
             let _copied = [committed, state];

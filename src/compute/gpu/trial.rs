@@ -5,10 +5,10 @@
 //! to machine. A batch gains more from a device than one case does.
 
 use super::backend::Gpu;
-use super::batch::Evaluation;
 use super::buffers::DeviceReal;
 use super::context::GpuContext;
-use super::shader_sources::Precision;
+use super::dispatch::Evaluation;
+use super::source::Precision;
 use crate::bounded;
 use crate::compute::cpu::Cpu;
 use crate::compute::{Call, CaseModel, Compute, ComputeError};

@@ -1,7 +1,7 @@
 //! A source compiled by naga as wgpu will, without a device, for messages with file and line.
 
 use super::error::GpuError;
-use super::shader_sources::{Assembled, Precision};
+use super::source::{Assembled, Precision};
 use naga::Module;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 

@@ -1,15 +1,12 @@
-//! The arrays of Newton's iterates, and the kernels that are bound to them.
+//! The arrays of Newton's iterates.
 
 use super::super::buffers::{DeviceReal, StorageBuffer};
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
-use super::super::linear::{Linear, POINT_ROWS, Record};
-use super::super::moves::Argument;
-use super::super::pipelines::Bound;
-use super::super::resident::{Connectivity, Resident, Sizes};
-use super::super::scratch::Scratch;
-use super::super::shader_sources::Kernel;
-use super::sources;
+use super::super::layout::{AT_POINT, ROWS};
+use super::super::linear::records::Record;
+use super::super::linear::sizes::THREADS;
+use super::super::resident::{Resident, Sizes};
 use crate::compute::CaseModel;
 use crate::compute::iterate::{missing_weight, prescribed};
 use crate::mesh::Mesh;
@@ -19,17 +16,11 @@ pub const NUMBERS: usize = 9;
 /// Numbers that come back, as `read.wgsl` orders them.
 pub const READINGS: usize = 10;
 /// Partial sums of `parts.wgsl`.
-const PARTS: usize = 4;
-/// Threads of the kernels that sum over nodes.
-const SUMMING: usize = 256;
-/// Components of a contact point's rows: residual, force rows, displacement rows.
-const ROWS: usize = POINT_ROWS + 2;
-/// Numbers of a contact point that are recorded: displacement, force.
-pub const AT_POINT: usize = 6;
+pub(in super::super) const PARTS: usize = 4;
 
 /// `node_info.wgsl`.
-const IS_PLATE: u32 = 8;
-const FIRST_POINT: u32 = 16;
+pub(in super::super) const IS_PLATE: u32 = 8;
+pub(in super::super) const FIRST_POINT: u32 = 16;
 
 /// What stays on the device of each case of a group.
 #[derive(Debug)]
@@ -40,21 +31,21 @@ pub struct Kept<R> {
     pub forces: StorageBuffer<R>,
     /// `[case][3 node + i]`.
     pub correction: StorageBuffer<R>,
-    by_residual: StorageBuffer<R>,
+    pub(super) by_residual: StorageBuffer<R>,
     /// Displacement one step before the committed one, `[case][3 node + i]`.
     pub before: StorageBuffer<R>,
     /// Contact points that slide without friction in this step, `[case][point]`.
     pub slides: StorageBuffer<u32>,
     /// Contact points that came off in this step, `[case][point]`.
     pub came_off: StorageBuffer<u32>,
-    rows: StorageBuffer<R>,
-    codes: StorageBuffer<u32>,
-    response: StorageBuffer<f32>,
-    largest: StorageBuffer<R>,
-    node_info: StorageBuffer<u32>,
-    plate: StorageBuffer<u32>,
-    plate_weight: StorageBuffer<R>,
-    height: StorageBuffer<R>,
+    pub(super) rows: StorageBuffer<R>,
+    pub(super) codes: StorageBuffer<u32>,
+    pub(super) response: StorageBuffer<f32>,
+    pub(super) largest: StorageBuffer<R>,
+    pub(super) node_info: StorageBuffer<u32>,
+    pub(super) plate: StorageBuffer<u32>,
+    pub(super) plate_weight: StorageBuffer<R>,
+    pub(super) height: StorageBuffer<R>,
 }
 
 impl<R: DeviceReal> Kept<R> {
@@ -170,13 +161,13 @@ pub struct Told<R> {
     pub status: StorageBuffer<u32>,
     /// `[slot][elastic, plastic, largest alpha]`.
     pub energies: StorageBuffer<R>,
-    partial_sums: StorageBuffer<R>,
+    pub(super) partial_sums: StorageBuffer<R>,
     /// `[slot]`: how the systems of corrections begin that hold a force, and how they end.
     pub corrections: StorageBuffer<Record>,
     /// `[slot]`: the same of the responses to a unit indentation.
     pub units: StorageBuffer<Record>,
     /// `[slot]`: change of h along such a correction.
-    depth_changes: StorageBuffer<R>,
+    pub(super) depth_changes: StorageBuffer<R>,
 }
 
 impl<R: DeviceReal> Told<R> {
@@ -196,7 +187,7 @@ impl<R: DeviceReal> Told<R> {
             at_points: zeros("recorded points", AT_POINT * sizes.contact_points)?.each(slots),
             status: context.zeros("recorded status", slots * sizes.contact_points)?.each(slots),
             energies: zeros("energies of bodies", 3)?,
-            partial_sums: zeros("partial sums of trials", PARTS * sizes.nodes.div_ceil(SUMMING))?,
+            partial_sums: zeros("partial sums of trials", PARTS * sizes.nodes.div_ceil(THREADS))?,
             corrections: context.zeros("solves of corrections", slots)?,
             units: context.zeros("solves of responses", slots)?,
             depth_changes: zeros("changes of h", 1)?,
@@ -205,138 +196,8 @@ impl<R: DeviceReal> Told<R> {
 
     /// Bytes of a slot.
     pub fn bytes(sizes: Sizes) -> u64 {
-        let numbers = NUMBERS + READINGS + 4 + AT_POINT * sizes.contact_points + PARTS * sizes.nodes.div_ceil(SUMMING);
+        let numbers = NUMBERS + READINGS + 4 + AT_POINT * sizes.contact_points + PARTS * sizes.nodes.div_ceil(THREADS);
         let words = 10 + sizes.contact_points;
         (size_of::<R>() * numbers + size_of::<u32>() * words + 2 * size_of::<Record>()) as u64
-    }
-}
-
-/// The kernels bound to a group of cases.
-#[derive(Debug)]
-pub struct Kernels {
-    pub(super) place: Bound,
-    pub(super) current: Bound,
-    pub(super) save: Bound,
-    pub(super) contact: Bound,
-    pub(super) measure: Bound,
-    pub(super) read: Bound,
-    pub(super) system: Bound,
-    pub(super) expand: Bound,
-    pub(super) unit: Bound,
-    pub(super) respond: Bound,
-    pub(super) depth: Bound,
-    pub(super) press: Bound,
-    pub(super) land: Bound,
-    pub(super) commit: Bound,
-    pub(super) energies: Bound,
-}
-
-impl Kernels {
-    /// Binds them.
-    ///
-    /// # Errors
-    /// What the device says.
-    pub fn new<R: DeviceReal>(
-        context: &GpuContext,
-        mesh: &Connectivity,
-        resident: &Resident<R>,
-        scratch: &Scratch<R>,
-        linear: &Linear,
-        (kept, told): (&Kept<R>, &Told<R>),
-    ) -> Result<Self, GpuError> {
-        let solver = linear.of_iterates();
-        let told_alone = [scratch.dimensions.binding(), scratch.active.binding(), told.marks.binding(), told.numbers.binding()];
-        let shape = [&told_alone[..], &[told.depth_changes.binding()]].concat();
-        let residual = [
-            resident.committed.binding(),
-            kept.node_info.binding(),
-            resident.weight.binding(),
-            kept.increments.binding(),
-            kept.forces.binding(),
-            kept.rows.binding(),
-            kept.codes.binding(),
-        ];
-        let bind = |kernel: &'static Kernel, parts: &[&[Argument<'_>]]| {
-            let pipeline = context.pipeline(kernel, R::PRECISION)?;
-            context.bind(&pipeline, [&shape[..], &parts.concat()].concat())
-        };
-        let place = [
-            resident.committed.binding(),
-            kept.before.binding(),
-            kept.correction.binding(),
-            kept.node_info.binding(),
-            resident.gap.binding(),
-            kept.increments.binding(),
-            scratch.increment.binding(),
-        ];
-        let contact = [
-            mesh.contact_node.binding(),
-            resident.weight.binding(),
-            mesh.on_symmetry_plane.binding(),
-            resident.friction.binding(),
-            kept.slides.binding(),
-            resident.gap.binding(),
-            kept.increments.binding(),
-            kept.forces.binding(),
-            kept.rows.binding(),
-            kept.codes.binding(),
-        ];
-        let measure = [kept.correction.binding(), kept.plate_weight.binding(), told.partial_sums.binding()];
-        let read = [
-            kept.plate.binding(),
-            mesh.contact_node.binding(),
-            kept.forces.binding(),
-            kept.rows.binding(),
-            kept.codes.binding(),
-            kept.slides.binding(),
-            kept.came_off.binding(),
-            told.partial_sums.binding(),
-            kept.largest.binding(),
-            told.readings.binding(),
-            told.counts.binding(),
-        ];
-        let system = [kept.largest.binding(), solver.rhs.binding(), solver.fixed.binding(), solver.rows.binding()];
-        let expand = [kept.largest.binding(), solver.answer.binding(), kept.correction.binding(), kept.by_residual.binding()];
-        let unit = [
-            kept.node_info.binding(),
-            solver.fixed.binding(),
-            kept.response.binding(),
-            solver.rhs.binding(),
-            solver.guess.binding(),
-        ];
-        let respond = [solver.answer.binding(), solver.rhs.binding(), solver.fixed.binding(), kept.response.binding()];
-        let press = [kept.response.binding(), kept.by_residual.binding(), kept.correction.binding()];
-        let depth = [told.corrections.binding(), told.units.binding(), told.depth_changes.binding()];
-        let depth_kernel = context.pipeline(&sources::DEPTH, R::PRECISION)?;
-        let commit = [
-            kept.node_info.binding(),
-            kept.height.binding(),
-            kept.increments.binding(),
-            kept.forces.binding(),
-            kept.rows.binding(),
-            kept.codes.binding(),
-            resident.committed.binding(),
-            kept.before.binding(),
-            resident.gap.binding(),
-            told.at_points.binding(),
-            told.status.binding(),
-        ];
-        Ok(Self {
-            place: bind(&sources::PLACE, &[&place])?,
-            current: bind(&sources::CURRENT, &[&[kept.increments.binding(), scratch.increment.binding()]])?,
-            save: bind(&sources::SAVE, &[&[scratch.force.binding(), kept.forces.binding()]])?,
-            contact: bind(&sources::CONTACT, &[&contact])?,
-            measure: bind(&sources::MEASURE, &[&residual, &measure])?,
-            read: bind(&sources::READ, &[&read])?,
-            system: bind(&sources::SYSTEM, &[&residual, &system])?,
-            expand: bind(&sources::EXPAND, &[&residual, &expand])?,
-            unit: bind(&sources::UNIT, &[&unit])?,
-            respond: bind(&sources::RESPOND, &[&respond])?,
-            depth: context.bind(&depth_kernel, [&told_alone[..], &depth].concat())?,
-            press: bind(&sources::PRESS, &[&press])?,
-            land: bind(&sources::LAND, &[&[kept.codes.binding(), kept.slides.binding(), kept.came_off.binding()]])?,
-            commit: bind(&sources::COMMIT, &[&commit])?,
-            energies: bind(&sources::ENERGIES, &[&[scratch.energies.binding(), told.energies.binding()]])?,
-        })
     }
 }

@@ -1,17 +1,17 @@
 //! Requests as marks of slots, and what the slots answer.
 
 use super::super::backend::Gpu;
-use super::super::batch::Dispatch;
 use super::super::buffers::DeviceReal;
-use super::super::linear::Solves;
-use super::{Brought, Corrections, Mark, Readout, flags, number, source};
+use super::super::dispatch::{Dispatch, status_of};
+use super::super::linear::records::Solves;
+use super::marks::{Brought, Corrections, Mark, Readout, flags, number, source};
 use crate::compute::call::not_asked;
 use crate::compute::iterate::{
     Ask, Begin, Correct, Corrected, From, Plate, Reading, Reply, Request, Settled, SettledPoint, Vectors,
 };
 use crate::compute::linear::SideReport;
 use crate::compute::{Answer, Call, ComputeError, Outcome};
-use crate::contact::coulomb::{Friction, Status};
+use crate::contact::coulomb::Friction;
 
 /// What is asked of the iterates of a case, and the reply.
 struct Asked {
@@ -255,11 +255,7 @@ impl<R: DeviceReal> Gpu<R> {
                     if mesh.is_on_symmetry_plane(mesh.contact_nodes[k]) {
                         force[1] = 0.0;
                     }
-                    let status = match committed.status[k] {
-                        0 => Status::Open,
-                        1 => Status::Stick,
-                        _ => Status::Slip,
-                    };
+                    let status = status_of(committed.status[k]);
                     SettledPoint { displacement: vector(0), force, status }
                 };
                 request.answer = Reply::Settled(Settled {

@@ -2,13 +2,15 @@
 
 use std::collections::BTreeSet;
 
+use super::super::arguments::{Argument, args};
 use super::super::buffers::StorageBuffer;
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
-use super::super::moves::Argument;
+use super::super::kernel::Kernel;
 use super::super::pipelines::{Bound, Recorder};
-use super::super::shader_sources::{Kernel, Precision};
-use super::levels::{LevelShape, Record};
+use super::super::source::Precision;
+use super::records::Record;
+use super::sizes::LevelShape;
 use super::sources::KRYLOV_RUNNING;
 
 /// A kernel with the threads that it takes.
@@ -22,15 +24,14 @@ impl Call {
     /// Binds a kernel, in single precision.
     ///
     /// # Errors
-    /// What the device says.
+    /// As [`GpuContext::bind`].
     pub fn new(
         context: &GpuContext,
         kernel: &'static Kernel,
         threads: usize,
-        arguments: Vec<Argument<'_>>,
+        arguments: &[Argument<'_>],
     ) -> Result<Self, GpuError> {
-        let pipeline = context.pipeline(kernel, Precision::F32)?;
-        Ok(Self { bound: context.bind(&pipeline, arguments)?, threads })
+        Ok(Self { bound: context.bind(kernel, Precision::F32, arguments)?, threads })
     }
 
     /// One that takes its arguments in another precision.
@@ -66,6 +67,14 @@ impl Call {
     }
 }
 
+/// Appends kernels for so many slots.
+///
+/// # Errors
+/// As [`Recorder::dispatch`].
+pub fn append(calls: &[Call], list: &mut Recorder<'_>, slots: usize) -> Result<(), GpuError> {
+    calls.iter().try_for_each(|call| call.append(list, slots))
+}
+
 /// What Krylov iterations are dispatched for: the slots that run.
 #[derive(Debug)]
 pub struct Running {
@@ -91,7 +100,7 @@ impl Running {
         let groups: Vec<usize> = groups.collect::<BTreeSet<_>>().into_iter().collect();
         let numbers: Vec<u32> = groups.iter().flat_map(|&groups| [groups as u32, 0, 1]).collect();
         let calls = context.calls("workgroups of slots that run", &numbers)?;
-        let list = Call::new(context, &KRYLOV_RUNNING, 1, vec![level.binding(), records.binding(), calls.binding()])?;
+        let list = Call::new(context, &KRYLOV_RUNNING, 1, &args! { level, records, calls })?;
         Ok(Self { calls, groups, list })
     }
 

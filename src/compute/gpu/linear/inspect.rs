@@ -3,9 +3,10 @@
 
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
-use super::levels::Record;
 use super::parts::Part;
-use super::{Linear, RESTART, small_numbers};
+use super::records::Record;
+use super::sizes::{RESTART, small_numbers};
+use super::solver::Linear;
 
 /// What a slot has on a level after an update and a V-cycle.
 #[derive(Clone, Debug)]
@@ -86,7 +87,7 @@ impl Linear {
     /// The device's fault.
     pub fn last_cycle(&self, context: &GpuContext) -> Result<Cycle, GpuError> {
         let mut record = [Record::default()];
-        context.download_at(&self.records, 0, &mut record)?;
+        context.download_at(&self.arrays.records, 0, &mut record)?;
         let steps = record[0].steps as usize;
         let vectors = |n: usize| vec![0.0; n * self.unknowns];
         let mut small = vec![0.0; small_numbers()];
@@ -99,11 +100,11 @@ impl Linear {
             solution: vectors(1),
             answer: vectors(1),
         };
-        context.download_at(&self.vectors.basis, 0, &mut out.basis)?;
-        context.download_at(&self.vectors.preconditioned, 0, &mut out.preconditioned)?;
-        context.download_at(&self.vectors.small, 0, &mut small)?;
-        context.download_at(&self.solution, 0, &mut out.solution)?;
-        context.download_at(&self.answer, 0, &mut out.answer)?;
+        context.download_at(&self.arrays.basis, 0, &mut out.basis)?;
+        context.download_at(&self.arrays.preconditioned, 0, &mut out.preconditioned)?;
+        context.download_at(&self.arrays.small, 0, &mut small)?;
+        context.download_at(&self.arrays.solution, 0, &mut out.solution)?;
+        context.download_at(&self.arrays.answer, 0, &mut out.answer)?;
         out.combination = small[small.len() - RESTART..][..steps].to_vec();
         Ok(out)
     }

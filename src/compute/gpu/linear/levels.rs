@@ -1,85 +1,22 @@
 //! The levels of the multigrid hierarchy on a device, and the kernels that are bound to them.
 
+use super::super::arguments::{Argument, args};
 use super::super::buffers::StorageBuffer;
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
-use super::super::moves::Argument;
+use super::super::kernel::Kernel;
 use super::super::pools::Pools;
-use super::RESTART;
 use super::calls::Call;
-use super::parts::Account;
+use super::records::Record;
+use super::sizes::{Account, LevelShape, RESTART, row_threads};
 use super::sources::{
     CYCLE_RESIDUAL, GALERKIN_COARSE, GALERKIN_PRODUCT, INVERT_DIAGONAL, PROLONG, RESTRICT, SMALL_DOWN, SMALL_UP, SMOOTH_START,
     SMOOTH_STEP, SOLVE_COARSEST,
 };
 use crate::linalg::layout::{Layout, LevelLayout, Lists, Rows, TransferLayout};
 
-/// Nodes of which one workgroup has the rows, and its threads.
-const NODES_IN_GROUP: usize = 64;
-const ROWS_IN_GROUP: usize = 192;
-
 /// Nodes of the largest level that one workgroup smooths.
 const SMALL_NODES: usize = 400;
-
-/// The block that `level.wgsl` calls Level.
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-struct LevelBlock {
-    nodes: u32,
-    width: u32,
-    coarse_nodes: u32,
-    products: u32,
-    coarse_width: u32,
-    restart: u32,
-    plate_nodes: u32,
-    coarsest_steps: u32,
-    smoothing_steps: u32,
-    reserved: [u32; 3],
-}
-
-/// What a slot solves, as `record.wgsl` has it.
-#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub struct Record {
-    /// 0 while it goes on.
-    pub done: u32,
-    /// Basis vectors that are complete.
-    pub vectors: u32,
-    /// Steps of the present cycle.
-    pub steps: u32,
-    /// Krylov iterations in all.
-    pub iterations: u32,
-    /// The tolerance is of the first residual.
-    pub relative_to_start: u32,
-    /// Relative residual to be reached.
-    pub tolerance: f32,
-    /// Norm of the residual to be reached.
-    pub goal: f32,
-    /// Norm of the right-hand side.
-    pub rhs_norm: f32,
-    /// Norm of the residual at the guess.
-    pub start_norm: f32,
-    /// Norm of the residual.
-    pub residual: f32,
-    /// Factor of the next basis vector.
-    pub scale: f32,
-    /// Plate force along the solution.
-    pub along: f32,
-    /// Which slot is here in the list of those that run, and after them the others.
-    pub running: u32,
-}
-
-impl Record {
-    /// How each of so many slots begins, all of them running.
-    pub fn of_slots(slots: usize) -> Vec<Self> {
-        (0..slots as u32).map(|running| Self { running, ..Self::default() }).collect()
-    }
-}
-
-/// Threads of the kernels with a thread for each row of so many nodes.
-pub fn row_threads(nodes: usize) -> usize {
-    nodes.div_ceil(NODES_IN_GROUP) * ROWS_IN_GROUP
-}
 
 /// What all levels share.
 #[derive(Clone, Copy, Debug)]
@@ -120,11 +57,6 @@ pub struct Level {
     width: usize,
 }
 
-/// The uniform block of a level, to be named by others.
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(transparent)]
-pub struct LevelShape(LevelBlock);
-
 #[derive(Debug)]
 struct Transfer {
     product_lists: DeviceLists,
@@ -161,8 +93,14 @@ impl DeviceLists {
         Self::new(context, what, &rows.start, &rows.column, &rows.weight)
     }
 
-    fn bindings(&self) -> [Argument<'_>; 3] {
-        [self.start.binding(), self.entry.binding(), self.weight.binding()]
+    /// As `galerkin.wgsl` has them.
+    fn as_lists(&self) -> [Argument<'_>; 3] {
+        args! { list_start: self.start, list_entry: self.entry, list_weight: self.weight }
+    }
+
+    /// As `transfer.wgsl` has them.
+    fn as_rows(&self) -> [Argument<'_>; 3] {
+        args! { row_start: self.start, row_column: self.entry, row_weight: self.weight }
     }
 }
 
@@ -210,7 +148,7 @@ impl Level {
             }
             _ => None,
         };
-        let sizes = LevelBlock {
+        let shape = LevelShape {
             nodes: layout.nodes as u32,
             width: layout.width as u32,
             coarse_nodes: next.map_or(0, |next| next.nodes as u32),
@@ -223,7 +161,7 @@ impl Level {
             reserved: [0; 3],
         };
         let block = context.block("a level")?;
-        context.upload(&block, &[LevelShape(sizes)])?;
+        context.upload(&block, &[shape])?;
         let vector = 3 * layout.nodes;
         Ok(Self {
             block,
@@ -286,8 +224,8 @@ impl Level {
     }
 
     /// Its sizes, columns and matrix, and a vector to be multiplied.
-    pub fn product<'a>(&'a self, x: &'a StorageBuffer<f32>) -> Vec<Argument<'a>> {
-        vec![self.block.binding(), self.column.binding(), self.matrix.binding(), x.binding()]
+    pub fn product<'a>(&'a self, x: &'a StorageBuffer<f32>) -> [Argument<'a>; 4] {
+        args! { level: self.block, column: self.column, matrix: self.matrix, x }
     }
 }
 
@@ -431,118 +369,112 @@ struct Binder<'a> {
 }
 
 impl Binder<'_> {
+    fn call(&self, kernel: &'static Kernel, threads: usize, arguments: &[&[Argument<'_>]]) -> Result<Call, GpuError> {
+        Call::new(self.context, kernel, threads, &arguments.concat())
+    }
+
     fn inverse(&self, level: &Level) -> Result<Call, GpuError> {
-        let arguments = vec![
-            level.block.binding(),
-            level.matrix.binding(),
-            level.diagonal.binding(),
-            level.fixed.binding(),
-            level.inverse.binding(),
-            level.column.binding(),
-        ];
-        Call::new(self.context, &INVERT_DIAGONAL, level.nodes, arguments)
+        let arguments = args! {
+            level: level.block,
+            matrix: level.matrix,
+            diagonal: level.diagonal,
+            is_fixed: level.fixed,
+            inverse: level.inverse,
+            column: level.column,
+        };
+        self.call(&INVERT_DIAGONAL, level.nodes, &[&arguments])
     }
 
     fn galerkin(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<[Call; 2], GpuError> {
-        let lists = |lists| [vec![level.block.binding()], DeviceLists::bindings(lists).to_vec()].concat();
-        let mut product = lists(&transfer.product_lists);
-        product.extend([level.matrix.binding(), transfer.product.binding(), level.column.binding(), level.fixed.binding()]);
-        let mut coarse = lists(&transfer.coarse_lists);
-        coarse.extend([transfer.product.binding(), next.matrix.binding()]);
+        let block = &args! { level: level.block };
+        let product = args! { given: level.matrix, to: transfer.product, column: level.column, is_fixed: level.fixed };
+        let coarse = args! { given: transfer.product, to: next.matrix };
+        let (product_lists, coarse_lists) = (transfer.product_lists.as_lists(), transfer.coarse_lists.as_lists());
         Ok([
-            Call::new(self.context, &GALERKIN_PRODUCT, transfer.products, product)?,
-            Call::new(self.context, &GALERKIN_COARSE, transfer.coarse_blocks / 2, coarse)?,
+            self.call(&GALERKIN_PRODUCT, transfer.products, &[block, &product_lists, &product])?,
+            self.call(&GALERKIN_COARSE, transfer.coarse_blocks / 2, &[block, &coarse_lists, &coarse])?,
         ])
     }
 
     /// A step of the smoother from `x` to `next`.
     fn smooth(&self, level: &Level, step: usize, x: &StorageBuffer<f32>, next: &StorageBuffer<f32>) -> Result<Call, GpuError> {
-        let mut arguments = level.product(x);
-        arguments.extend([
-            level.inverse.binding(),
-            level.b.binding(),
-            level.last_step.binding(),
-            next.binding(),
-            self.shares[step].binding(),
-            self.records.binding(),
-        ]);
-        Call::new(self.context, &SMOOTH_STEP, level.threads(), arguments)
+        let arguments = args! {
+            inverse: level.inverse,
+            b: level.b,
+            last_step: level.last_step,
+            next,
+            recurrence: self.shares[step],
+            records: self.records,
+        };
+        self.call(&SMOOTH_STEP, level.threads(), &[&level.product(x), &arguments])
     }
 
     /// Smoothing from zero, which leaves `other` where the number of steps is odd, and what is left
     /// to the next level.
     fn down(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<Vec<Call>, GpuError> {
-        let start = vec![
-            level.block.binding(),
-            level.inverse.binding(),
-            level.b.binding(),
-            level.last_step.binding(),
-            level.other.binding(),
-            self.shares[0].binding(),
-            self.records.binding(),
-        ];
-        let mut out = vec![Call::new(self.context, &SMOOTH_START, level.threads(), start)?];
+        let start = args! {
+            level: level.block,
+            inverse: level.inverse,
+            b: level.b,
+            last_step: level.last_step,
+            next: level.other,
+            recurrence: self.shares[0],
+            records: self.records,
+        };
+        let mut out = vec![self.call(&SMOOTH_START, level.threads(), &[&start])?];
         let (mut x, mut free) = (&level.other, &level.x);
         for step in 1..self.shares.len() {
             out.push(self.smooth(level, step, x, free)?);
             std::mem::swap(&mut x, &mut free);
         }
-        let mut residual = level.product(x);
-        residual.extend([
-            level.inverse.binding(),
-            level.b.binding(),
-            level.fixed.binding(),
-            level.residual.binding(),
-            self.records.binding(),
-        ]);
-        out.push(Call::new(self.context, &CYCLE_RESIDUAL, level.threads(), residual)?);
+        let residual = args! {
+            inverse: level.inverse,
+            b: level.b,
+            is_fixed: level.fixed,
+            r: level.residual,
+            records: self.records,
+        };
+        out.push(self.call(&CYCLE_RESIDUAL, level.threads(), &[&level.product(x), &residual])?);
         out.push(self.restrict(level, transfer, next)?);
         Ok(out)
     }
 
     fn restrict(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<Call, GpuError> {
-        let mut restrict = vec![level.block.binding()];
-        restrict.extend(transfer.restriction.bindings());
-        restrict.extend([level.residual.binding(), next.b.binding(), self.records.binding()]);
-        Call::new(self.context, &RESTRICT, row_threads(transfer.coarse_nodes), restrict)
+        let arguments = args! { level: level.block, given: level.residual, to: next.b, records: self.records };
+        self.call(&RESTRICT, row_threads(transfer.coarse_nodes), &[&arguments, &transfer.restriction.as_rows()])
     }
 
-    fn small<'a>(&'a self, level: &'a Level) -> Vec<Argument<'a>> {
-        vec![
-            level.block.binding(),
-            level.column.binding(),
-            level.matrix.binding(),
-            level.inverse.binding(),
-            level.b.binding(),
-            level.x.binding(),
-            level.last_step.binding(),
-            level.residual.binding(),
-            self.all_shares.binding(),
-            self.records.binding(),
-        ]
+    fn small<'a>(&'a self, level: &'a Level) -> [Argument<'a>; 10] {
+        args! {
+            level: level.block,
+            column: level.column,
+            matrix: level.matrix,
+            inverse: level.inverse,
+            b: level.b,
+            x: level.x,
+            last_step: level.last_step,
+            left: level.residual,
+            recurrence: self.all_shares,
+            records: self.records,
+        }
     }
 
     /// As [`Binder::down`], by one workgroup a slot; it leaves `x`.
     fn small_down(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<[Call; 2], GpuError> {
-        Ok([Call::new(self.context, &SMALL_DOWN, 1, self.small(level))?, self.restrict(level, transfer, next)?])
+        Ok([self.call(&SMALL_DOWN, 1, &[&self.small(level)])?, self.restrict(level, transfer, next)?])
     }
 
     /// As [`Binder::up`], by one workgroup a slot.
     fn small_up(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<Call, GpuError> {
-        let mut arguments = self.small(level);
-        arguments.extend(transfer.prolongation.bindings());
-        arguments.push(next.x.binding());
-        Call::new(self.context, &SMALL_UP, 1, arguments)
+        self.call(&SMALL_UP, 1, &[&self.small(level), &transfer.prolongation.as_rows(), &args! { coarse: next.x }])
     }
 
     /// The next level's correction, and smoothing, which ends in `x`.
     fn up(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<Vec<Call>, GpuError> {
         let odd = self.shares.len() % 2 == 1;
         let (mut x, mut free) = if odd { (&level.other, &level.x) } else { (&level.x, &level.other) };
-        let mut prolong = vec![level.block.binding()];
-        prolong.extend(transfer.prolongation.bindings());
-        prolong.extend([next.x.binding(), x.binding(), self.records.binding(), level.fixed.binding()]);
-        let mut out = vec![Call::new(self.context, &PROLONG, level.threads(), prolong)?];
+        let arguments = args! { level: level.block, given: next.x, to: x, records: self.records, is_fixed: level.fixed };
+        let mut out = vec![self.call(&PROLONG, level.threads(), &[&arguments, &transfer.prolongation.as_rows()])?];
         for step in 0..self.shares.len() {
             out.push(self.smooth(level, step, x, free)?);
             std::mem::swap(&mut x, &mut free);
@@ -551,14 +483,13 @@ impl Binder<'_> {
     }
 
     fn coarsest(&self, level: &Level, shares: &StorageBuffer<[f32; 2]>) -> Result<Call, GpuError> {
-        let mut arguments = level.product(&level.x);
-        arguments.extend([
-            level.inverse.binding(),
-            level.b.binding(),
-            level.last_step.binding(),
-            shares.binding(),
-            self.records.binding(),
-        ]);
-        Call::new(self.context, &SOLVE_COARSEST, 1, arguments)
+        let arguments = args! {
+            inverse: level.inverse,
+            b: level.b,
+            last_step: level.last_step,
+            recurrence: shares,
+            records: self.records,
+        };
+        self.call(&SOLVE_COARSEST, 1, &[&level.product(&level.x), &arguments])
     }
 }

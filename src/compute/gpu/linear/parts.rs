@@ -2,8 +2,10 @@
 
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
-use super::levels::Record;
-use super::{Linear, append};
+use super::calls::append;
+use super::records::Record;
+use super::sizes::Account;
+use super::solver::Linear;
 
 /// A part of a linear solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,17 +33,6 @@ impl Part {
     ];
 }
 
-/// What a part is for one slot, and what all slots share of it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Account {
-    /// Numbers of four bytes that are read or written, each once a kernel.
-    pub numbers: usize,
-    /// Alike, of lists that all slots share.
-    pub shared: usize,
-    /// Additions and multiplications.
-    pub operations: usize,
-}
-
 impl Linear {
     /// Runs a part `times` times for so many slots, over the numbers that are there, and waits.
     ///
@@ -49,18 +40,18 @@ impl Linear {
     /// The device's fault.
     pub fn repeat(&self, context: &GpuContext, part: Part, slots: usize, times: usize) -> Result<(), GpuError> {
         // Slots that are done would be left out.
-        context.upload_at(&self.records, 0, &Record::of_slots(slots))?;
+        context.upload_at(&self.arrays.records, 0, &Record::of_slots(slots))?;
         let mut list = context.record();
         for _ in 0..times {
             match part {
-                Part::Matrix => self.assemble.append(&mut list, slots)?,
+                Part::Matrix => self.kernels.assemble.append(&mut list, slots)?,
                 Part::Galerkin => append(self.levels.galerkin(), &mut list, slots)?,
                 Part::Smoother => append(self.levels.smoother_step(), &mut list, slots)?,
-                Part::Product => append(&self.iteration[..1], &mut list, slots)?,
+                Part::Product => append(&self.kernels.iteration[..1], &mut list, slots)?,
                 Part::Cycle => append(&self.levels.cycle, &mut list, slots)?,
             }
         }
-        list.submit_and_read(&mut [self.records.read(0, &mut [Record::default()])?])
+        list.submit_and_read(&mut [self.arrays.records.read(0, &mut [Record::default()])?])
     }
 
     /// The account of a part.

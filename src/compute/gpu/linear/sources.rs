@@ -1,7 +1,7 @@
 //! The kernels of the linear solver. All of them run in single precision.
 
-use super::super::shader_sources::Binding::{Read, ReadWrite, Uniform};
-use super::super::shader_sources::{Kernel, Source, source};
+use super::super::kernel::Kernel;
+use super::super::source::{Source, source};
 
 const LEVEL: Source = source!("linalg/level.wgsl");
 const RECORD: Source = source!("linalg/record.wgsl");
@@ -17,201 +17,87 @@ const SMALL: Source = source!("linalg/small.wgsl");
 const NORM: Source = source!("linalg/norm.wgsl");
 
 /// The tangent as the finest level's matrix.
-pub static ASSEMBLE: Kernel = Kernel {
-    name: "assemble",
-    sources: &[LEVEL, HALVES, source!("linalg/assemble.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, Read, Read, ReadWrite, Uniform],
-    workgroup: 64,
-};
+pub static ASSEMBLE: Kernel = Kernel::new("assemble", &[LEVEL, HALVES, source!("linalg/assemble.wgsl")]);
 
 /// Inverses of a level's diagonal blocks, and what rounding takes from its rows.
-pub static INVERT_DIAGONAL: Kernel = Kernel {
-    name: "invert_diagonal",
-    sources: &[LEVEL, HALVES, source!("linalg/diagonal.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, ReadWrite, Read],
-    workgroup: 64,
-};
+pub static INVERT_DIAGONAL: Kernel = Kernel::new("invert_diagonal", &[LEVEL, HALVES, source!("linalg/diagonal.wgsl")]);
 
 /// A P.
-pub static GALERKIN_PRODUCT: Kernel = Kernel {
-    name: "galerkin_product",
-    sources: &[LEVEL, HALVES, GALERKIN, source!("linalg/galerkin_product.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, Read, ReadWrite, Read, Read],
-    workgroup: 64,
-};
+pub static GALERKIN_PRODUCT: Kernel =
+    Kernel::new("galerkin_product", &[LEVEL, HALVES, GALERKIN, source!("linalg/galerkin_product.wgsl")]);
 
 /// P^T (A P).
-pub static GALERKIN_COARSE: Kernel = Kernel {
-    name: "galerkin_coarse",
-    sources: &[LEVEL, HALVES, GALERKIN, source!("linalg/galerkin_coarse.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, Read, ReadWrite],
-    workgroup: 64,
-};
+pub static GALERKIN_COARSE: Kernel =
+    Kernel::new("galerkin_coarse", &[LEVEL, HALVES, GALERKIN, source!("linalg/galerkin_coarse.wgsl")]);
 
 /// What is fixed.
-pub static PRESCRIBE: Kernel = Kernel {
-    name: "prescribe",
-    sources: &[LEVEL, source!("linalg/prescribe.wgsl")],
-    bindings: &[Uniform, Read, Read, ReadWrite],
-    workgroup: 192,
-};
+pub static PRESCRIBE: Kernel = Kernel::new("prescribe", &[LEVEL, source!("linalg/prescribe.wgsl")]);
 
 /// The smoother's first step from zero.
-pub static SMOOTH_START: Kernel = Kernel {
-    name: "smooth_start",
-    sources: &[LEVEL, RECORD, source!("linalg/chebyshev_start.wgsl")],
-    bindings: &[Uniform, Read, Read, ReadWrite, ReadWrite, Uniform, Read],
-    workgroup: 192,
-};
+pub static SMOOTH_START: Kernel = Kernel::new("smooth_start", &[LEVEL, RECORD, source!("linalg/chebyshev_start.wgsl")]);
 
 /// A step of the smoother.
-pub static SMOOTH_STEP: Kernel = Kernel {
-    name: "smooth_step",
-    sources: &[LEVEL, RECORD, HALVES, PRODUCT, ROUNDED_ROW_TIMES, source!("linalg/chebyshev.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, Read, Read, ReadWrite, ReadWrite, Uniform, Read],
-    workgroup: 192,
-};
+pub static SMOOTH_STEP: Kernel =
+    Kernel::new("smooth_step", &[LEVEL, RECORD, HALVES, PRODUCT, ROUNDED_ROW_TIMES, source!("linalg/chebyshev.wgsl")]);
 
 /// The coarsest level.
-pub static SOLVE_COARSEST: Kernel = Kernel {
-    name: "solve_coarsest",
-    sources: &[LEVEL, RECORD, HALVES, source!("linalg/coarsest.wgsl")],
-    bindings: &[Uniform, Read, Read, ReadWrite, Read, Read, ReadWrite, Read, Read],
-    workgroup: 256,
-};
+pub static SOLVE_COARSEST: Kernel = Kernel::new("solve_coarsest", &[LEVEL, RECORD, HALVES, source!("linalg/coarsest.wgsl")]);
 
 /// A small level on the way down.
-pub static SMALL_DOWN: Kernel = Kernel {
-    name: "small_down",
-    sources: &[LEVEL, RECORD, HALVES, SMALL, ROUNDED_ROW_TIMES, source!("linalg/small_down.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, Read, ReadWrite, ReadWrite, ReadWrite, Read, Read],
-    workgroup: 256,
-};
+pub static SMALL_DOWN: Kernel =
+    Kernel::new("small_down", &[LEVEL, RECORD, HALVES, SMALL, ROUNDED_ROW_TIMES, source!("linalg/small_down.wgsl")]);
 
 /// A small level on the way up.
-pub static SMALL_UP: Kernel = Kernel {
-    name: "small_up",
-    sources: &[LEVEL, RECORD, HALVES, SMALL, ROUNDED_ROW_TIMES, source!("linalg/small_up.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, Read, ReadWrite, ReadWrite, ReadWrite, Read, Read, Read, Read, Read, Read],
-    workgroup: 256,
-};
+pub static SMALL_UP: Kernel =
+    Kernel::new("small_up", &[LEVEL, RECORD, HALVES, SMALL, ROUNDED_ROW_TIMES, source!("linalg/small_up.wgsl")]);
 
 /// b - A x.
-pub static RESIDUAL: Kernel = Kernel {
-    name: "residual",
-    sources: &[LEVEL, RECORD, HALVES, PRODUCT, ROW_TIMES, source!("linalg/residual.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, Read, Read, ReadWrite, Read],
-    workgroup: 192,
-};
+pub static RESIDUAL: Kernel =
+    Kernel::new("residual", &[LEVEL, RECORD, HALVES, PRODUCT, ROW_TIMES, source!("linalg/residual.wgsl")]);
 
 /// The same of the rounded matrix, within a V-cycle.
-pub static CYCLE_RESIDUAL: Kernel = Kernel {
-    name: "cycle_residual",
-    sources: &[LEVEL, RECORD, HALVES, PRODUCT, ROUNDED_ROW_TIMES, source!("linalg/cycle_residual.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, Read, Read, Read, ReadWrite, Read],
-    workgroup: 192,
-};
+pub static CYCLE_RESIDUAL: Kernel =
+    Kernel::new("cycle_residual", &[LEVEL, RECORD, HALVES, PRODUCT, ROUNDED_ROW_TIMES, source!("linalg/cycle_residual.wgsl")]);
 
 /// To the next level.
-pub static RESTRICT: Kernel = Kernel {
-    name: "restrict_residual",
-    sources: &[LEVEL, RECORD, TRANSFER, source!("linalg/restrict.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, Read, ReadWrite, Read],
-    workgroup: 192,
-};
+pub static RESTRICT: Kernel = Kernel::new("restrict_residual", &[LEVEL, RECORD, TRANSFER, source!("linalg/restrict.wgsl")]);
 
 /// From the next level.
-pub static PROLONG: Kernel = Kernel {
-    name: "prolong_add",
-    sources: &[LEVEL, RECORD, TRANSFER, source!("linalg/prolong.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, Read, ReadWrite, Read, Read],
-    workgroup: 192,
-};
+pub static PROLONG: Kernel = Kernel::new("prolong_add", &[LEVEL, RECORD, TRANSFER, source!("linalg/prolong.wgsl")]);
 
 /// A times the preconditioned vector, which is kept.
-pub static KRYLOV_PRODUCT: Kernel = Kernel {
-    name: "krylov_product",
-    sources: &[LEVEL, RECORD, HALVES, PRODUCT, ROW_TIMES, source!("linalg/krylov_product.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, Read, Read, ReadWrite, ReadWrite],
-    workgroup: 192,
-};
+pub static KRYLOV_PRODUCT: Kernel =
+    Kernel::new("krylov_product", &[LEVEL, RECORD, HALVES, PRODUCT, ROW_TIMES, source!("linalg/krylov_product.wgsl")]);
 
 /// Products of a vector with the basis.
-pub static KRYLOV_DOTS: Kernel = Kernel {
-    name: "krylov_dots",
-    sources: &[LEVEL, RECORD, KRYLOV, SUMS, source!("linalg/dots.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, ReadWrite],
-    workgroup: 256,
-};
+pub static KRYLOV_DOTS: Kernel = Kernel::new("krylov_dots", &[LEVEL, RECORD, KRYLOV, SUMS, source!("linalg/dots.wgsl")]);
 
 /// A pass of Gram-Schmidt.
-pub static KRYLOV_ORTHOGONALISE: Kernel = Kernel {
-    name: "krylov_orthogonalise",
-    sources: &[LEVEL, RECORD, KRYLOV, SUMS, source!("linalg/orthogonalise.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, ReadWrite, ReadWrite, ReadWrite],
-    workgroup: 256,
-};
+pub static KRYLOV_ORTHOGONALISE: Kernel =
+    Kernel::new("krylov_orthogonalise", &[LEVEL, RECORD, KRYLOV, SUMS, source!("linalg/orthogonalise.wgsl")]);
 
 /// The norm by which tolerances are measured.
-pub static KRYLOV_MEASURE: Kernel = Kernel {
-    name: "krylov_measure",
-    sources: &[LEVEL, RECORD, KRYLOV, NORM, source!("linalg/measure.wgsl")],
-    bindings: &[Uniform, ReadWrite, Read],
-    workgroup: 64,
-};
+pub static KRYLOV_MEASURE: Kernel = Kernel::new("krylov_measure", &[LEVEL, RECORD, KRYLOV, NORM, source!("linalg/measure.wgsl")]);
 
 /// The beginning of a cycle.
-pub static KRYLOV_BEGIN: Kernel = Kernel {
-    name: "krylov_begin",
-    sources: &[LEVEL, RECORD, KRYLOV, NORM, source!("linalg/begin_cycle.wgsl")],
-    bindings: &[Uniform, ReadWrite, Read, ReadWrite],
-    workgroup: 64,
-};
+pub static KRYLOV_BEGIN: Kernel = Kernel::new("krylov_begin", &[LEVEL, RECORD, KRYLOV, NORM, source!("linalg/begin_cycle.wgsl")]);
 
 /// The end of a Krylov iteration.
-pub static KRYLOV_ADVANCE: Kernel = Kernel {
-    name: "krylov_advance",
-    sources: &[LEVEL, RECORD, KRYLOV, source!("linalg/advance.wgsl")],
-    bindings: &[Uniform, ReadWrite, Read, ReadWrite],
-    workgroup: 64,
-};
+pub static KRYLOV_ADVANCE: Kernel = Kernel::new("krylov_advance", &[LEVEL, RECORD, KRYLOV, source!("linalg/advance.wgsl")]);
 
 /// The next basis vector.
-pub static KRYLOV_NORMALISE: Kernel = Kernel {
-    name: "krylov_normalise",
-    sources: &[LEVEL, RECORD, source!("linalg/normalise.wgsl")],
-    bindings: &[Uniform, Read, ReadWrite, ReadWrite],
-    workgroup: 256,
-};
+pub static KRYLOV_NORMALISE: Kernel = Kernel::new("krylov_normalise", &[LEVEL, RECORD, source!("linalg/normalise.wgsl")]);
 
 /// The list of the slots that run.
-pub static KRYLOV_RUNNING: Kernel = Kernel {
-    name: "krylov_running",
-    sources: &[LEVEL, RECORD, source!("linalg/running.wgsl")],
-    bindings: &[Uniform, ReadWrite, ReadWrite],
-    workgroup: 64,
-};
+pub static KRYLOV_RUNNING: Kernel = Kernel::new("krylov_running", &[LEVEL, RECORD, source!("linalg/running.wgsl")]);
 
 /// The combination of least residual.
-pub static KRYLOV_LEAST_SQUARES: Kernel = Kernel {
-    name: "krylov_least_squares",
-    sources: &[LEVEL, RECORD, KRYLOV, source!("linalg/least_squares.wgsl")],
-    bindings: &[Uniform, Read, ReadWrite],
-    workgroup: 64,
-};
+pub static KRYLOV_LEAST_SQUARES: Kernel =
+    Kernel::new("krylov_least_squares", &[LEVEL, RECORD, KRYLOV, source!("linalg/least_squares.wgsl")]);
 
 /// The solution.
-pub static KRYLOV_COMBINE: Kernel = Kernel {
-    name: "krylov_combine",
-    sources: &[LEVEL, RECORD, KRYLOV, source!("linalg/combine.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, Read, ReadWrite],
-    workgroup: 256,
-};
+pub static KRYLOV_COMBINE: Kernel = Kernel::new("krylov_combine", &[LEVEL, RECORD, KRYLOV, source!("linalg/combine.wgsl")]);
 
 /// The plate's force along the solution.
-pub static PLATE_FORCE: Kernel = Kernel {
-    name: "plate_force",
-    sources: &[LEVEL, RECORD, HALVES, PRODUCT, ROW_TIMES, SUMS, source!("linalg/plate_force.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, Read, ReadWrite],
-    workgroup: 256,
-};
+pub static PLATE_FORCE: Kernel =
+    Kernel::new("plate_force", &[LEVEL, RECORD, HALVES, PRODUCT, ROW_TIMES, SUMS, source!("linalg/plate_force.wgsl")]);

@@ -1,5 +1,5 @@
-// The conditions of a contact point as an answer has them: component by component, `at` being the
-// place of its first, and status and fixed components as one number.
+// The conditions of a contact point as `rows` has them, component by component, `at` being the
+// place of its first; and status and fixed components as one number, as `codes` has them.
 
 fn store_rows(at: u32, rows: Rows) {
     store(at, 0u, rows.residual);
@@ -11,9 +11,9 @@ fn store_rows(at: u32, rows: Rows) {
 
 fn store(at: u32, first: u32, v: vec3<real>) {
     let points = dimensions.contact_points;
-    answer[at + first * points] = v.x;
-    answer[at + (first + 1u) * points] = v.y;
-    answer[at + (first + 2u) * points] = v.z;
+    rows[at + first * points] = v.x;
+    rows[at + (first + 1u) * points] = v.y;
+    rows[at + (first + 2u) * points] = v.z;
 }
 
 // Status + 4, 8, 16 for fixed x, y, z.

@@ -1,0 +1,218 @@
+//! The kernels of Newton's iterates, bound to the arrays of a group of cases.
+
+use super::super::arguments::{Argument, args};
+use super::super::buffers::DeviceReal;
+use super::super::context::GpuContext;
+use super::super::error::GpuError;
+use super::super::kernel::Kernel;
+use super::super::linear::solver::{Linear, OfIterates};
+use super::super::pipelines::Bound;
+use super::super::resident::{Connectivity, Resident};
+use super::super::scratch::Scratch;
+use super::arrays::{Kept, Told};
+use super::sources;
+
+/// The kernels bound to a group of cases.
+#[derive(Debug)]
+pub struct Kernels {
+    pub(super) place: Bound,
+    pub(super) current: Bound,
+    pub(super) save: Bound,
+    pub(super) contact: Bound,
+    pub(super) measure: Bound,
+    pub(super) read: Bound,
+    pub(super) system: Bound,
+    pub(super) expand: Bound,
+    pub(super) unit: Bound,
+    pub(super) respond: Bound,
+    pub(super) depth: Bound,
+    pub(super) press: Bound,
+    pub(super) land: Bound,
+    pub(super) commit: Bound,
+    pub(super) energies: Bound,
+}
+
+/// What they are bound to.
+struct Arrays<'a, R> {
+    context: &'a GpuContext,
+    mesh: &'a Connectivity,
+    resident: &'a Resident<R>,
+    scratch: &'a Scratch<R>,
+    solver: OfIterates<'a>,
+    kept: &'a Kept<R>,
+    told: &'a Told<R>,
+}
+
+impl<R: DeviceReal> Arrays<'_, R> {
+    fn bind(&self, kernel: &'static Kernel, parts: &[&[Argument<'_>]]) -> Result<Bound, GpuError> {
+        let Self { scratch, told, .. } = self;
+        let shape = args! {
+            dimensions: scratch.dimensions,
+            active_cases: scratch.active,
+            marks: told.marks,
+            numbers: told.numbers,
+            depth_changes: told.depth_changes,
+        };
+        self.context.bind(kernel, R::PRECISION, &[&shape[..], &parts.concat()].concat())
+    }
+
+    /// Of both iterates of a case.
+    fn iterates(&self) -> [Argument<'_>; 4] {
+        let kept = self.kept;
+        args! { increments: kept.increments, forces: kept.forces, rows: kept.rows, codes: kept.codes }
+    }
+
+    /// As `residual.wgsl` has them.
+    fn residual(&self) -> [Argument<'_>; 3] {
+        args! { committed: self.resident.committed, node_info: self.kept.node_info, weight: self.resident.weight }
+    }
+
+    fn kernels(&self) -> Result<Kernels, GpuError> {
+        let [place, save, contact, measure, read] = self.of_trials()?;
+        let [current, system, expand, unit, respond, depth, press] = self.of_systems()?;
+        let [land, commit, energies] = self.of_steps()?;
+        Ok(Kernels {
+            place,
+            current,
+            save,
+            contact,
+            measure,
+            read,
+            system,
+            expand,
+            unit,
+            respond,
+            depth,
+            press,
+            land,
+            commit,
+            energies,
+        })
+    }
+
+    fn of_trials(&self) -> Result<[Bound; 5], GpuError> {
+        let Self { mesh, resident, scratch, kept, told, .. } = self;
+        let place = args! {
+            committed: resident.committed,
+            before: kept.before,
+            correction: kept.correction,
+            node_info: kept.node_info,
+            gap_at_start: resident.gap,
+            increments: kept.increments,
+            increment: scratch.increment,
+        };
+        let contact = args! {
+            contact_node: mesh.contact_node,
+            weight: resident.weight,
+            on_symmetry_plane: mesh.on_symmetry_plane,
+            friction: resident.friction,
+            slides: kept.slides,
+            gap_at_start: resident.gap,
+        };
+        let measure = args! {
+            correction: kept.correction,
+            plate_weight: kept.plate_weight,
+            partial_sums: told.partial_sums,
+        };
+        let read = args! {
+            plate: kept.plate,
+            contact_node: mesh.contact_node,
+            forces: kept.forces,
+            rows: kept.rows,
+            codes: kept.codes,
+            slides: kept.slides,
+            came_off: kept.came_off,
+            partial_sums: told.partial_sums,
+            largest: kept.largest,
+            readings: told.readings,
+            counts: told.counts,
+        };
+        Ok([
+            self.bind(&sources::PLACE, &[&place])?,
+            self.bind(&sources::SAVE, &[&args! { force: scratch.force, forces: kept.forces }])?,
+            self.bind(&sources::CONTACT, &[&self.iterates(), &contact])?,
+            self.bind(&sources::MEASURE, &[&self.iterates(), &self.residual(), &measure])?,
+            self.bind(&sources::READ, &[&read])?,
+        ])
+    }
+
+    fn of_systems(&self) -> Result<[Bound; 7], GpuError> {
+        let Self { scratch, solver, kept, told, .. } = self;
+        let OfIterates { rhs, fixed, rows, guess, answer } = *solver;
+        let current = args! { increments: kept.increments, increment: scratch.increment };
+        let system = args! { largest: kept.largest, rhs, is_fixed: fixed, sliding: rows };
+        let expand = args! {
+            largest: kept.largest,
+            answer,
+            correction: kept.correction,
+            by_residual: kept.by_residual,
+        };
+        let unit = args! { node_info: kept.node_info, is_fixed: fixed, response: kept.response, rhs, guess };
+        let respond = args! { answer, rhs, is_fixed: fixed, response: kept.response };
+        let press = args! { response: kept.response, by_residual: kept.by_residual, correction: kept.correction };
+        Ok([
+            self.bind(&sources::CURRENT, &[&current])?,
+            self.bind(&sources::SYSTEM, &[&self.iterates(), &self.residual(), &system])?,
+            self.bind(&sources::EXPAND, &[&self.iterates(), &self.residual(), &expand])?,
+            self.bind(&sources::UNIT, &[&unit])?,
+            self.bind(&sources::RESPOND, &[&respond])?,
+            self.bind(&sources::DEPTH, &[&args! { corrections: told.corrections, units: told.units }])?,
+            self.bind(&sources::PRESS, &[&press])?,
+        ])
+    }
+
+    fn of_steps(&self) -> Result<[Bound; 3], GpuError> {
+        let Self { resident, scratch, kept, told, .. } = self;
+        let land = args! { codes: kept.codes, slides: kept.slides, came_off: kept.came_off };
+        let commit = args! {
+            node_info: kept.node_info,
+            height: kept.height,
+            committed: resident.committed,
+            before: kept.before,
+            gap_at_start: resident.gap,
+            at_points: told.at_points,
+            status: told.status,
+        };
+        Ok([
+            self.bind(&sources::LAND, &[&land])?,
+            self.bind(&sources::COMMIT, &[&self.iterates(), &commit])?,
+            self.bind(&sources::ENERGIES, &[&args! { energies: scratch.energies, totals: told.energies }])?,
+        ])
+    }
+}
+
+/// The iterates of a batch: a part for each of its groups.
+#[derive(Debug)]
+pub struct Iterates<R> {
+    /// Arrays and kernels of each group.
+    pub groups: Vec<(Kept<R>, Kernels)>,
+    /// What all dispatches are told and leave.
+    pub told: Told<R>,
+}
+
+impl<R: DeviceReal> Iterates<R> {
+    /// What so many slots are told, and the kernels of each group, whose arrays are there.
+    ///
+    /// # Errors
+    /// What the device says.
+    pub fn new<'a>(
+        context: &GpuContext,
+        mesh: &Connectivity,
+        scratch: &Scratch<R>,
+        linear: &Linear,
+        (slots, kept): (usize, Vec<Kept<R>>),
+        residents: impl Iterator<Item = &'a Resident<R>>,
+    ) -> Result<Self, GpuError>
+    where
+        R: 'a,
+    {
+        let told = Told::new(context, mesh.sizes, slots)?;
+        let bound = |(kept, resident): (Kept<R>, &Resident<R>)| {
+            let arrays = Arrays { context, mesh, resident, scratch, solver: linear.of_iterates(), kept: &kept, told: &told };
+            let kernels = arrays.kernels()?;
+            Ok((kept, kernels))
+        };
+        let groups = kept.into_iter().zip(residents).map(bound).collect::<Result<_, GpuError>>()?;
+        Ok(Self { groups, told })
+    }
+}

@@ -1,0 +1,32 @@
+//! Sizes of what host and kernels both know, in numbers. WGSL files state those that they use
+//! again, under the same names; `agreement` compares them.
+
+use crate::element::hex8::{NODES, PAIRS};
+
+/// Parameters of a material in `material_parameters`.
+pub const PARAMETERS: usize = 9;
+/// Components of f - I, row by row.
+pub const RELATIVE: usize = 9;
+/// Components of a point's state: b_e_bar - I (xx, yy, zz, xy, yz, zx), alpha.
+pub const STATE: usize = 7;
+/// Components of a point's committed state and of what flowed in its last step.
+pub const HISTORY: usize = 2 * STATE;
+/// Components of an answer: deviatoric stress (6), b_e_bar - I (6), alpha, mu_bar, norm, normal
+/// (6), beta_1, beta_3, beta_4, delta_gamma, plastic work, U', U'', U, W.
+pub const ANSWER: usize = 30;
+/// Components of the tangent: c_ab at 6 a + b.
+pub const TANGENT: usize = 36;
+/// Coordinates of an element's nodes.
+pub const COORDINATES: usize = 3 * NODES;
+/// Numbers of an element's tangent.
+pub const ELEMENT_BLOCKS: usize = 9 * PAIRS;
+/// Components of the stresses that a force is gathered from.
+pub const STRESS: usize = 9;
+/// Numbers that go to a contact point: force, increment.
+pub const TRIAL: usize = 6;
+/// Numbers of a contact point's conditions: residual, force rows, displacement rows.
+pub const ROWS: usize = 3 + 2 * 9;
+/// Numbers that a contact point has in the linear solver: whether it slides, its rows.
+pub const POINT_ROWS: usize = 1 + 2 * 9;
+/// Numbers of a contact point that are recorded: displacement, force.
+pub const AT_POINT: usize = 6;

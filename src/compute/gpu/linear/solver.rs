@@ -1,0 +1,273 @@
+//! The linear solver of a batch's slots.
+
+use super::super::buffers::{DeviceReal, Read, StorageBuffer};
+use super::super::context::GpuContext;
+use super::super::error::GpuError;
+use super::super::pipelines::Recorder;
+use super::super::pools::Pools;
+use super::arrays::Arrays;
+use super::calls::append;
+use super::kernels::Kernels;
+use super::levels::Levels;
+use super::plan::Plan;
+use super::records::{FULL, RUNNING, Record, Solves};
+use crate::compute::linear::SideReport;
+
+/// Krylov iterations of a list that goes on with those that have not finished.
+const MORE: usize = 4;
+
+/// One right-hand side of every slot, `[slot][component][node]`.
+#[derive(Debug, Default)]
+pub struct Right {
+    /// Right-hand sides; at fixed unknowns their values.
+    pub rhs: Vec<f32>,
+    /// Guesses, the values of fixed unknowns in them; none if all are zero.
+    pub guess: Option<Vec<f32>>,
+    /// Relative residual to be reached, by slot.
+    pub tolerance: Vec<f32>,
+    /// Whether it is relative to the residual at the guess, by slot.
+    pub relative_to_guess: Vec<bool>,
+    /// Krylov iterations that the slot that takes most will probably take.
+    pub expected: usize,
+}
+
+/// Solutions `[slot][component][node]` of one side, and how they went by slot.
+pub type Answers = (Vec<f32>, Vec<SideReport>);
+
+/// The linear solver of a batch's slots.
+#[derive(Debug)]
+pub struct Linear {
+    pub(super) levels: Levels,
+    pub(super) arrays: Arrays,
+    pub(super) kernels: Kernels,
+    pub(super) unknowns: usize,
+    /// Numbers of the tangent's upper blocks.
+    pub(super) upper_numbers: usize,
+}
+
+impl Linear {
+    /// The arrays and kernels for so many slots, some in memory that they share with others;
+    /// `blocks` are the tangents that the gathering kernels leave.
+    ///
+    /// # Errors
+    /// What the device says.
+    pub fn new<T: DeviceReal>(
+        context: &GpuContext,
+        plan: &Plan,
+        slots: (usize, &Pools),
+        blocks: &StorageBuffer<T>,
+    ) -> Result<Self, GpuError> {
+        let records = context.zeros("linear solves", slots.0)?;
+        let levels = Levels::new(context, &plan.layout, slots, plan.plate.len(), &records)?;
+        let arrays = Arrays::new(context, plan, slots, records)?;
+        let kernels = Kernels::new(context, plan, (&levels, &arrays), blocks)?;
+        let unknowns = 3 * plan.layout.levels[0].nodes;
+        Ok(Self { levels, arrays, kernels, unknowns, upper_numbers: 9 * plan.upper_blocks })
+    }
+
+    /// Appends what makes the hierarchy's matrices from the tangents that are on the device.
+    /// `rows` are the contact rows `[slot][slides, force rows, displacement rows][point]`, `fixed`
+    /// the fixed components `[slot][node]`, a bit each.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn update(
+        &self,
+        context: &GpuContext,
+        list: &mut Recorder<'_>,
+        rows: &[f32],
+        fixed: &[u32],
+        slots: usize,
+    ) -> Result<(), GpuError> {
+        context.upload_at(&self.arrays.rows, 0, rows)?;
+        context.upload_at(&self.levels.levels[0].fixed, 0, fixed)?;
+        self.append_update(list, slots)
+    }
+
+    /// The same with rows and fixed components that are on the device.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn append_update(&self, list: &mut Recorder<'_>, slots: usize) -> Result<(), GpuError> {
+        self.kernels.assemble.append(list, slots)?;
+        append(&self.levels.update, list, slots)
+    }
+
+    /// Solves with a right-hand side of each slot after the kernels of `list`; returns the
+    /// solutions `[slot][component][node]`. `and` are other arrays to be read at the first chance.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn solve(
+        &self,
+        context: &GpuContext,
+        mut list: Recorder<'_>,
+        right: &Right,
+        and: (&StorageBuffer<u32>, &mut [u32]),
+    ) -> Result<(Vec<f32>, Vec<SideReport>), GpuError> {
+        let slots = right.tolerance.len();
+        let mut solves = Solves::new(&right.tolerance, &right.relative_to_guess, right.expected);
+        context.upload_at(&self.arrays.rhs, 0, &right.rhs)?;
+        if let Some(guess) = &right.guess {
+            context.upload_at(&self.arrays.guess, 0, guess)?;
+        }
+        self.set_out(context, &mut list, &solves, right.guess.is_some())?;
+        let mut answer = vec![0.0; slots * self.unknowns];
+        self.iterate(&mut list, solves.first_list(), slots)?;
+        list.submit_and_read(&mut [self.read(&mut solves)?, self.arrays.answer.read(0, &mut answer)?, and.0.read(0, and.1)?])?;
+        self.count(context, &mut solves);
+        while solves.go_on() {
+            let mut list = context.record();
+            self.take_up(context, &mut list, &mut solves)?;
+            list.submit_and_read(&mut [self.read(&mut solves)?, self.arrays.answer.read(0, &mut answer)?])?;
+            self.count(context, &mut solves);
+        }
+        Ok((answer, solves.reports()))
+    }
+
+    /// Appends what begins solutions with the right-hand sides that are on the device, and with the
+    /// guesses that are if they count.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn set_out(&self, context: &GpuContext, list: &mut Recorder<'_>, solves: &Solves, guess: bool) -> Result<(), GpuError> {
+        context.upload_at(&self.arrays.records, 0, &solves.records)?;
+        self.append_begin(list, solves.slots(), guess)
+    }
+
+    /// The same after other solutions of the list: `records`, to which it was told how these begin,
+    /// are on the device.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn set_out_after(
+        &self,
+        list: &mut Recorder<'_>,
+        records: &StorageBuffer<Record>,
+        slots: usize,
+        guess: bool,
+    ) -> Result<(), GpuError> {
+        list.copy(records, 0, &self.arrays.records, 0, slots)?;
+        self.append_begin(list, slots, guess)
+    }
+
+    /// Appends a copy of how the present solutions stand.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn append_keep(&self, list: &mut Recorder<'_>, records: &StorageBuffer<Record>, slots: usize) -> Result<(), GpuError> {
+        list.copy(&self.arrays.records, 0, records, 0, slots)
+    }
+
+    fn append_begin(&self, list: &mut Recorder<'_>, slots: usize, guess: bool) -> Result<(), GpuError> {
+        self.kernels.prescribe.append(list, slots)?;
+        append(&self.kernels.residual, list, slots)?;
+        self.kernels.measure.append(list, slots)?;
+        if guess {
+            list.copy(&self.arrays.guess, 0, &self.arrays.solution, 0, slots * self.unknowns)?;
+            append(&self.kernels.residual, list, slots)?;
+        }
+        append(&self.kernels.begin, list, slots)
+    }
+
+    /// Appends more of solutions that have not finished.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn take_up(&self, context: &GpuContext, list: &mut Recorder<'_>, solves: &mut Solves) -> Result<(), GpuError> {
+        let slots = solves.slots();
+        // All slots are in the same step of their cycles: those that go on are all full, or none.
+        let records = &mut solves.records;
+        let full: Vec<usize> = (0..slots).filter(|&slot| records[slot].done == FULL && records[slot].goes_on()).collect();
+        for &slot in &full {
+            // The next cycle begins at the answer of this one.
+            list.copy(&self.arrays.answer, slot * self.unknowns, &self.arrays.solution, slot * self.unknowns, self.unknowns)?;
+            (records[slot].done, records[slot].vectors, records[slot].steps) = (RUNNING, 0, 0);
+            context.upload_at(&self.arrays.records, slot, &[records[slot]])?;
+        }
+        if !full.is_empty() {
+            list.count_for(Some(full.len()));
+            append(&self.kernels.residual, list, slots)?;
+            append(&self.kernels.begin, list, slots)?;
+        }
+        self.iterate(list, MORE, slots)
+    }
+
+    /// What is to be read back of solutions.
+    ///
+    /// # Errors
+    /// [`GpuError::Length`] for more slots than there are.
+    pub fn read<'a>(&'a self, solves: &'a mut Solves) -> Result<Read<'a>, GpuError> {
+        self.arrays.records.read(0, &mut solves.records)
+    }
+
+    /// Has a profile count what the Krylov iterations moved that came back in `solves`, which are
+    /// those of one list, and the answers after them.
+    pub fn count(&self, context: &GpuContext, solves: &mut Solves) {
+        if !context.is_profiled() {
+            return;
+        }
+        let new = solves.records.iter().zip(&solves.counted).map(|(r, counted)| r.iterations.saturating_sub(*counted));
+        let new: Vec<u32> = new.collect();
+        for i in 0..new.iter().copied().max().unwrap_or(0) {
+            let running = || solves.records.iter().zip(&new).filter(|(_, new)| i < **new);
+            // Those that run are all in the same step, which takes one vector more than the last.
+            let vectors = running().map(|(r, new)| (r.steps + i).saturating_sub(*new) + 1).max().unwrap_or(0);
+            for call in self.levels.cycle.iter().chain(&self.kernels.iteration).chain([&self.kernels.next]) {
+                context.credit(call.bound.moved.as_ref(), running().count(), vectors as usize);
+            }
+        }
+        for record in &solves.records {
+            for call in &self.kernels.finish {
+                context.credit(call.bound.moved.as_ref(), 1, record.steps as usize);
+            }
+        }
+        solves.counted = solves.records.iter().map(|record| record.iterations).collect();
+    }
+
+    /// The arrays that Newton's iterates fill and read.
+    pub fn of_iterates(&self) -> OfIterates<'_> {
+        OfIterates {
+            rhs: &self.arrays.rhs,
+            fixed: &self.levels.levels[0].fixed,
+            rows: &self.arrays.rows,
+            guess: &self.arrays.guess,
+            answer: &self.arrays.answer,
+        }
+    }
+
+    /// Appends Krylov iterations, and the answers after them.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn iterate(&self, list: &mut Recorder<'_>, times: usize, slots: usize) -> Result<(), GpuError> {
+        // Which slots leave them out is known when they have run: see `count`.
+        list.count_for(Some(0));
+        let running = &self.kernels.running;
+        running.list.append(list, slots)?;
+        for _ in 0..times {
+            running.append(&self.levels.cycle, list, slots)?;
+            running.append(&self.kernels.iteration, list, slots)?;
+            running.list.append(list, slots)?;
+            running.append(std::slice::from_ref(&self.kernels.next), list, slots)?;
+        }
+        append(&self.kernels.finish, list, slots)?;
+        list.count_for(None);
+        Ok(())
+    }
+}
+
+/// Arrays of the solver by which Newton's iterates reach it.
+#[derive(Debug)]
+pub struct OfIterates<'a> {
+    /// Right-hand sides.
+    pub rhs: &'a StorageBuffer<f32>,
+    /// Fixed components.
+    pub fixed: &'a StorageBuffer<u32>,
+    /// Rows of points that slide.
+    pub rows: &'a StorageBuffer<f32>,
+    /// Guesses.
+    pub guess: &'a StorageBuffer<f32>,
+    /// Solutions.
+    pub answer: &'a StorageBuffer<f32>,
+}
