@@ -140,12 +140,14 @@ fn call(backend: &mut dyn Compute, displacements: &Displacements, call: fn(Arc<[
     backend.call(displacements.iter().map(|(case, u)| (*case, call(u.as_slice().into()))).collect()).unwrap()
 }
 
+/// Internal forces at displacements, one answer a case.
 pub fn forces(backend: &mut dyn Compute, displacements: &Displacements) -> Vec<(Outcome, Vec<f64>)> {
     let answers = call(backend, displacements, |displacement| Call::Force { displacement });
     let force = |answer| if let Answer::Force { force, outcome } = answer { (outcome, force) } else { panic!("{answer:?}") };
     answers.into_iter().map(force).collect()
 }
 
+/// Their tangents, in f64.
 pub fn tangents(backend: &mut dyn Compute, displacements: &Displacements) -> Vec<(Outcome, Vec<[f64; 9]>)> {
     let answers = call(backend, displacements, |displacement| Call::Tangent { displacement, blocks: Blocks::Double(Vec::new()) });
     let tangent = |answer| match answer {
@@ -155,6 +157,7 @@ pub fn tangents(backend: &mut dyn Compute, displacements: &Displacements) -> Vec
     answers.into_iter().map(tangent).collect()
 }
 
+/// Commits them; energies of the cases.
 pub fn commits(backend: &mut dyn Compute, displacements: &Displacements) -> Vec<(Outcome, Energies)> {
     let answers = call(backend, displacements, |displacement| Call::Commit { displacement });
     let commit = |answer| match answer {

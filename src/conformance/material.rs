@@ -27,7 +27,9 @@ pub struct Bounds {
 }
 
 impl Bounds {
+    /// For a backend in f64.
     pub const F64: Self = Self { agreement: 1e-13, equations: 1e-13 };
+    /// For one in f32.
     pub const F32: Self = Self { agreement: 1e-5, equations: 1e-5 };
 }
 

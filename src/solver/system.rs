@@ -37,8 +37,9 @@ pub struct Boundary {
     pub weight: f64,
     /// What the body is pressed against.
     pub opponent: Box<dyn Opponent>,
-    /// Nodes and contact nodes of the sphere; those of another body follow them.
+    /// Nodes of the sphere; those of another body follow them.
     pub own_nodes: usize,
+    /// Its contact nodes, alike.
     pub own_contacts: usize,
 }
 
