@@ -445,30 +445,7 @@ pub fn draw_chart(root: &Canvas, chart: &Chart) -> Drawn {
             root.text(&label, (frame.left - 9.0, y), INK, Writing::new(TICK_SIZE, Anchor::End))?;
         }
     }
-    for series in &chart.series {
-        let ink = series.colour.mix(series.opacity);
-        let finite = finite(&series.points);
-        if series.filled {
-            let area = frame.area(&finite);
-            if area.len() > 2 {
-                root.polygon(&area, Paint::fill(ink))?;
-            }
-        }
-        if let Some(line) = series.line {
-            let pieces = frame.pieces(&finite);
-            for piece in &pieces {
-                draw_line(root, line, ink, piece)?;
-            }
-            if series.arrow {
-                draw_arrow(root, ink, &pieces)?;
-            }
-        }
-        if let Some(mark) = series.mark {
-            for at in finite.iter().map(|&(x, y)| (frame.x(x), frame.y(y))).filter(|&at| frame.holds(at)) {
-                draw_mark(root, mark, ink, at)?;
-            }
-        }
-    }
+    chart.series.iter().try_for_each(|series| draw_series(root, &frame, series))?;
     root.rectangle([(frame.left, frame.top), (frame.right, frame.bottom)], Paint::outline(INK, 1.0))?;
 
     let middle = (0.5 * (frame.left + frame.right), 0.5 * (frame.top + frame.bottom));
@@ -480,6 +457,32 @@ pub fn draw_chart(root: &Canvas, chart: &Chart) -> Drawn {
         Some(bar) => draw_bar(root, bar, frame.right + 20.0, [frame.top + 24.0, frame.bottom]),
         None => Ok(()),
     }
+}
+
+fn draw_series(root: &Canvas, frame: &Frame, series: &Series) -> Drawn {
+    let ink = series.colour.mix(series.opacity);
+    let finite = finite(&series.points);
+    if series.filled {
+        let area = frame.area(&finite);
+        if area.len() > 2 {
+            root.polygon(&area, Paint::fill(ink))?;
+        }
+    }
+    if let Some(line) = series.line {
+        let pieces = frame.pieces(&finite);
+        for piece in &pieces {
+            draw_line(root, line, ink, piece)?;
+        }
+        if series.arrow {
+            draw_arrow(root, ink, &pieces)?;
+        }
+    }
+    if let Some(mark) = series.mark {
+        for at in finite.iter().map(|&(x, y)| (frame.x(x), frame.y(y))).filter(|&at| frame.holds(at)) {
+            draw_mark(root, mark, ink, at)?;
+        }
+    }
+    Ok(())
 }
 
 /// Draws several diagrams in panels of equal size, row by row. Their titles tell them apart, and
