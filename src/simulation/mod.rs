@@ -66,7 +66,7 @@ pub enum SimulationError {
     },
     /// Whoever watches the run could not go on: results cannot be written, say.
     #[error("{0}")]
-    Observer(Box<dyn std::error::Error + Send + Sync>),
+    Observer(observer::ObserverError),
 }
 
 impl SimulationError {

@@ -14,18 +14,21 @@ use crate::solver::StepReport;
 use crate::solver::newton::Newton;
 use crate::solver::phases::PhaseTimes;
 
+/// What an observer could not do, a file that cannot be written for instance: the run ends with it.
+pub type ObserverError = Box<dyn std::error::Error + Send + Sync>;
+
 /// Watches a run.
 pub trait Observer {
     /// A step was accepted. The undeformed state comes first, as step 0.
-    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError>;
     /// A segment of the path has ended, or the run ends within it; `view` shows its last accepted
     /// step.
-    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
+    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError>;
     /// Something that the user should know and the summary should keep.
     fn note(&mut self, text: &str);
     /// The contact left the finely meshed zone: the run starts over from the undeformed state on
     /// the mesh of `problem`, which has so many unknowns.
-    fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), ObserverError> {
         let _ = (problem, unknowns);
         Ok(())
     }

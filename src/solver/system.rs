@@ -12,7 +12,7 @@ use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::{missing_weight, prescribed};
 use crate::compute::{ComputeError, Fault, Outcome};
 use crate::contact::coulomb::{Friction, Point, Rows, Status, contact_rows};
-use crate::contact::frame::Frame;
+use crate::contact::frame::ContactFrame;
 use crate::linalg::bsr::BlockMatrix;
 use crate::mesh::Mesh;
 use crate::real::Real;
@@ -94,7 +94,7 @@ pub struct Trial {
     /// Where there is an interface: the force that it carries at each slave node, in its frame.
     pub interface_force: Vec<[f64; 3]>,
     /// Against a rigid sphere: the frame of its surface at each contact node.
-    pub frames: Vec<Frame>,
+    pub frames: Vec<ContactFrame>,
     /// Indentation (an unknown when the normal force is held).
     pub h: f64,
     /// Normal force by which merits are scaled: the sum of f_z over the closed points.
@@ -295,14 +295,14 @@ pub fn apply_contact<T: Real>(matrix: &mut BlockMatrix<T>, mesh: &Mesh, rows: &[
 }
 
 /// Turns the rows and columns of contact nodes into their frames, if they have any.
-pub fn turn<T: Real>(matrix: &mut BlockMatrix<T>, mesh: &Mesh, frames: &[Frame]) {
+pub fn turn<T: Real>(matrix: &mut BlockMatrix<T>, mesh: &Mesh, frames: &[ContactFrame]) {
     for (q, &node) in frames.iter().zip(&mesh.contact_nodes) {
         turn_node(matrix, node as usize, q);
     }
 }
 
 /// Turns the row and the column of a node into a frame.
-pub(super) fn turn_node<T: Real>(matrix: &mut BlockMatrix<T>, node: usize, q: &Frame) {
+pub(super) fn turn_node<T: Real>(matrix: &mut BlockMatrix<T>, node: usize, q: &ContactFrame) {
     for k in matrix.pattern.row(node) {
         let column = matrix.pattern.column[k] as usize;
         let a = matrix.blocks[k].map(T::to_f64);

@@ -13,7 +13,7 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 
 use super::StudyError;
-use super::batch::{Guest, Host, Place, share};
+use super::batch::{Guest, Host, Slot, share};
 use super::run::Finished;
 use super::schedule::side_by_side;
 use super::simulate::Simulator;
@@ -106,7 +106,7 @@ impl Waiting {
 
 /// A place of a batch, and the case that it has from the beginning, up to when that is begun.
 struct Desk {
-    place: Place,
+    place: Slot,
     first: Mutex<Option<(usize, Problem)>>,
     /// What the user should know of how its device was chosen.
     notes: Vec<String>,

@@ -111,7 +111,7 @@ pub(crate) fn run_on(
     let done =
         |case: usize| options.resume && Row::read(&study.cases[case].case, &directory.case(&study.cases[case].id)).is_done();
     study.check_room(|case| share.binary_search(&case).is_ok() && !done(case))?;
-    let Slots { count, short } = Slots::of(study, &share, devices.is_there(), options.threads);
+    let Concurrency { count, short } = Concurrency::of(study, &share, devices.is_there(), options.threads);
     let pools = pools(count)?;
     memory::side_by_side(count);
     let Begun { study, mut rows, lock } = begin_share(directory, study, options, &share)?;
@@ -158,13 +158,13 @@ pub(crate) fn run_on(
 }
 
 /// How many cases of a share are computed side by side.
-struct Slots {
+struct Concurrency {
     count: usize,
     /// Why they are no more, where memory is what there is too little of.
     short: String,
 }
 
-impl Slots {
+impl Concurrency {
     /// On a device or on so many threads.
     fn of(study: &Study, share: &[usize], device: bool, threads: usize) -> Self {
         // Over a plane the device does nearly all of the work, and the threads of the cases wait

@@ -45,7 +45,7 @@ use std::time::{Duration, Instant};
 
 pub use check::{Check, Reference, Scale, Verdict};
 pub use report::Report;
-pub use runner::{BackendFactory, Level, Runner};
+pub use runner::{BackendFactory, Fineness, Runner};
 
 use crate::compute::ComputeError;
 use crate::simulation::SimulationError;

@@ -10,7 +10,7 @@
 //! the force that the interface carries there, at a master node the body's own and what the image
 //! exerts on it, which is nothing together in equilibrium.
 
-use super::frame::{Frame, frame, from_frame, to_frame};
+use super::frame::{ContactFrame, frame, from_frame, to_frame};
 use super::interface::{Interface, inward_normals};
 use super::inversion::inverted_image_weights;
 use super::mortar::{Weights, self_image_weights};
@@ -51,7 +51,7 @@ pub struct PairInterface {
     /// Per contact node: the slave that it is, if it is one.
     pub slave_of: Vec<Option<usize>>,
     /// Per slave: frame [t_1, t_2, n].
-    pub frames: Vec<Frame>,
+    pub frames: Vec<ContactFrame>,
     /// Per contact node: the slave that it has most to do with.
     pub facing: Vec<Option<usize>>,
     /// Nodes of the contact nodes.
@@ -199,7 +199,7 @@ impl Interface for PairInterface {
         &self.facing
     }
 
-    fn frames(&self) -> &[Frame] {
+    fn frames(&self) -> &[ContactFrame] {
         &self.frames
     }
 
