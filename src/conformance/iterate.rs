@@ -11,7 +11,7 @@ use crate::compute::linear::Ended;
 use crate::compute::{Answer, Call, CaseModel, Compute, Fault, Outcome};
 use crate::contact::coulomb::{Friction, Status};
 use crate::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
-use crate::material::{Elasticity, Hardening, Material};
+use crate::material::{Elasticity, FlowStress, Material};
 use crate::mesh::Mesh;
 use crate::solver::iterate::SetOut;
 use crate::solver::newton::Newton;
@@ -28,9 +28,9 @@ pub const DEPTH: f64 = 0.004;
 /// friction.
 fn models(mesh: &Arc<Mesh>) -> Vec<CaseModel> {
     let cases = [
-        (Hardening::Elastic, Friction::Coulomb(0.3)),
-        (Hardening::ideal(2e-3).unwrap(), Friction::Stick),
-        (Hardening::ideal(4e-3).unwrap(), Friction::Coulomb(0.0)),
+        (FlowStress::Elastic, Friction::Coulomb(0.3)),
+        (FlowStress::ideal(2e-3).unwrap(), Friction::Stick),
+        (FlowStress::ideal(4e-3).unwrap(), Friction::Coulomb(0.0)),
     ];
     let model = |(hardening, friction)| CaseModel {
         mesh: mesh.clone(),

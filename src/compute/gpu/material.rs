@@ -6,7 +6,7 @@ use super::context::GpuContext;
 use super::error::GpuError;
 use super::pipelines::Bound;
 use super::shader_sources::RETURN_MAPPING;
-use crate::material::{Hardening, Material};
+use crate::material::{FlowStress as Hardening, Material};
 use crate::real::Real;
 
 /// Parameters of a material in `material_parameters`.

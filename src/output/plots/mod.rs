@@ -37,7 +37,7 @@ pub use turning::{plot_moments, plot_plane};
 use self::axes::{Axes, AxisUnits};
 use super::{OutputDirectory, OutputError, StepRecord};
 use crate::analytical::ElasticSphere;
-use crate::analytical::olsson_larsson::Hardening;
+use crate::analytical::olsson_larsson::OlssonLarssonHardening;
 use crate::case::{Case, PictureFormat};
 use std::path::PathBuf;
 
@@ -47,7 +47,7 @@ pub struct PlotInputs {
     /// The sphere, for Hertz's curve; against a rigid sphere that of radius R*.
     pub sphere: ElasticSphere,
     /// The law for Olsson & Larsson's curve; `None` where theirs has no counterpart.
-    pub hardening: Option<Hardening>,
+    pub hardening: Option<OlssonLarssonHardening>,
     /// Coulomb's coefficient for the line that F_T/F_N runs up to; `None` for full stick.
     pub friction: Option<f64>,
     /// Bodies that deform (see [`crate::case::Case::bodies`]): closed forms are of one of them,

@@ -8,7 +8,7 @@ use std::path::Path;
 
 const INPUTS: PlotInputs = PlotInputs {
     sphere: ElasticSphere { radius: 1.0, youngs_modulus: 200e3, poissons_ratio: 0.3 },
-    hardening: Some(Hardening::Ideal { yield_stress: 400.0 }),
+    hardening: Some(OlssonLarssonHardening::Ideal { yield_stress: 400.0 }),
     friction: Some(0.3),
     bodies: 1.0,
 };
