@@ -1,10 +1,23 @@
 //! What the pictures of a case show beside its curves.
 
 use super::super::units::coefficient;
-use super::PlotInputs;
 use crate::analytical::ElasticSphere;
 use crate::analytical::olsson_larsson::OlssonLarssonHardening;
 use crate::case::{self, Case};
+
+/// What the plots show beside the computed curves, in the user's units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlotInputs {
+    /// The sphere, for Hertz's curve; against a rigid sphere that of radius R*.
+    pub sphere: ElasticSphere,
+    /// The law for Olsson & Larsson's curve; `None` where theirs has no counterpart.
+    pub hardening: Option<OlssonLarssonHardening>,
+    /// Coulomb's coefficient for the line that F_T/F_N runs up to; `None` for full stick.
+    pub friction: Option<f64>,
+    /// Bodies that deform (see [`crate::case::Case::bodies`]): closed forms are of one of them,
+    /// over a plane.
+    pub bodies: f64,
+}
 
 impl PlotInputs {
     /// Those of a case in the user's units. Olsson & Larsson's laws cover ideal, power (k =
