@@ -541,7 +541,7 @@ pub fn compose_from(case: &Case, tables: [&Tabulated; 2], for_shear: [&Tabulated
         body: Against::of(&scaled),
         frame: Centres::of(&scaled).frame(),
         program: format!("asperity {}, in series from the tables of its two bodies", env!("CARGO_PKG_VERSION")),
-        case: super::build::case_of(&scaled, elements[0].min(elements[1])).to_toml(),
+        case: super::cases::case_of(&scaled, elements[0].min(elements[1])).to_toml(),
         range,
         elements_per_contact_radius: elements[0].min(elements[1]),
         levels,
