@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::{ContactPoint, StepRecord, Units};
 use crate::case::Case;
-use crate::simulation::observer::{Observer, ObserverError, StepView};
+use crate::simulation::drive::{Observer, StepView};
+use crate::simulation::error::ObserverError;
 use crate::simulation::problem::Problem;
 
 /// The history of a run, in the case's units, the undeformed state first, and the contact at its

@@ -19,7 +19,8 @@ use super::{
 use crate::case::{Case, Fields, PictureFormat};
 use crate::compute::{ComputeError, Description};
 use crate::simulation::checkpoint::Snapshot;
-use crate::simulation::observer::{Observer, ObserverError, StepView};
+use crate::simulation::drive::{Observer, StepView};
+use crate::simulation::error::ObserverError;
 use crate::simulation::problem::Problem;
 use crate::simulation::scout::Scout;
 

@@ -7,7 +7,8 @@ use crate::output::{
     Clock, ErrorEstimate, Limits, OutsideSteps, PathShare, Position, Progress, Setting, Status, StepRecord, Summary,
     SummaryInputs, TimeByPhase, Units, detail, last_line,
 };
-use crate::simulation::observer::{Observer, ObserverError, StepView};
+use crate::simulation::drive::{Observer, StepView};
+use crate::simulation::error::ObserverError;
 use crate::simulation::problem::Problem;
 use crate::simulation::scout::Scout;
 use crate::solver::phases::PhaseTimes;

@@ -6,7 +6,8 @@ use std::cell::Cell;
 use crate::compute::ComputeError;
 use crate::output::{StepRecord, Units};
 use crate::simulation::checkpoint::Snapshot;
-use crate::simulation::observer::{Observer, ObserverError, StepView};
+use crate::simulation::drive::{Observer, StepView};
+use crate::simulation::error::ObserverError;
 use crate::simulation::problem::Problem;
 
 /// How far a run is to go.

@@ -1,6 +1,7 @@
 //! Who watches a run, and what is shown of a step.
 
 use super::checkpoint::Snapshot;
+use super::error::ObserverError;
 use super::problem::Problem;
 use super::record::{ContactPoint, StepRecord};
 use crate::case::Scaled;
@@ -13,9 +14,6 @@ use crate::mesh::Mesh;
 use crate::solver::StepReport;
 use crate::solver::newton::Newton;
 use crate::solver::phases::PhaseTimes;
-
-/// What an observer could not do, a file that cannot be written for instance: the run ends with it.
-pub type ObserverError = Box<dyn std::error::Error + Send + Sync>;
 
 /// Watches a run.
 pub trait Observer {

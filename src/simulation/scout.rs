@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use super::SimulationError;
 use super::drive::{Ending, Observer, StepView};
+use super::error::ObserverError;
 use super::follow::{follow, on_cpu};
-use super::observer::ObserverError;
 use super::problem::{Problem, press_steps, shear_steps};
 use super::record::StepRecord;
 use super::zone::{LARGEST_FINE_ZONE, MARGIN, Zone};

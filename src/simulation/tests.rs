@@ -3,7 +3,7 @@
 use super::SimulationError;
 use super::checkpoint::Snapshot;
 use super::drive::{Drive, Ending, Observer, StepView};
-use super::observer::ObserverError;
+use super::error::ObserverError;
 use super::problem::Problem;
 use super::record::StepRecord;
 use crate::case::{Case, Hold, Opponent, Segment, ShearTarget};

@@ -11,7 +11,7 @@ use crate::compute::cpu::Cpu;
 use crate::compute::{About, Answer, Call, CaseFields, CaseModel, Compute, ComputeError};
 use crate::output::{OutputDirectory, Status, Summary};
 use crate::simulation::drive::{Drive, Ending, Observer, StepView};
-use crate::simulation::observer::ObserverError;
+use crate::simulation::error::ObserverError;
 use crate::simulation::problem::Problem;
 use crate::simulation::record::StepRecord;
 

@@ -5,7 +5,8 @@ use std::time::{Duration, Instant};
 
 use crate::compute::ComputeError;
 use crate::simulation::checkpoint::Snapshot;
-use crate::simulation::observer::{Observer, ObserverError, StepView};
+use crate::simulation::drive::{Observer, StepView};
+use crate::simulation::error::ObserverError;
 use crate::simulation::problem::Problem;
 
 /// Time between copies: one takes as long as some steps do.
