@@ -1,5 +1,6 @@
 use super::input::{laws, material_points, models, side_by_side, squeezed};
 use super::report::On;
+use super::timing::Patience;
 use super::traffic::Sizes;
 use super::*;
 use crate::compute::Outcome;

@@ -13,11 +13,12 @@ use crate::contact::coulomb::{Friction, Status};
 use crate::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
 use crate::material::{Elasticity, FlowStress, Material};
 use crate::mesh::Mesh;
+use crate::solver::contact_rows::apply_contact;
 use crate::solver::iterate::SetOut;
 use crate::solver::newton::Newton;
 use crate::solver::phases::PhaseTimes;
 use crate::solver::pose::Pose;
-use crate::solver::system::{Boundary, Trial, apply_contact, fixed_unknowns, plate_functional, right_hand_side};
+use crate::solver::system::{Boundary, Trial, fixed_unknowns, plate_functional, right_hand_side};
 use crate::solver::{Control, Settings, StepOutcome};
 use std::sync::Arc;
 

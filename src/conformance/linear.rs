@@ -11,7 +11,8 @@ use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, Status, con
 use crate::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
 use crate::material::{Elasticity, FlowStress, Material};
 use crate::mesh::{Mesh, SphereSpec, sphere_mesh, whole};
-use crate::solver::system::{Boundary, apply_contact, fixed_unknowns, plate_functional};
+use crate::solver::contact_rows::apply_contact;
+use crate::solver::system::{Boundary, fixed_unknowns, plate_functional};
 use std::sync::Arc;
 
 /// Cases of a batch.

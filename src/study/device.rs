@@ -14,8 +14,7 @@ use rayon::prelude::*;
 
 use super::StudyError;
 use super::batch::{Guest, Host, Slot, share};
-use super::run::Finished;
-use super::schedule::side_by_side;
+use super::schedule::{Finished, side_by_side};
 use super::simulate::Simulator;
 use crate::compute::select::{Devices, PrecisionChoice, Selected};
 use crate::compute::{CaseModel, Compute, ComputeError};

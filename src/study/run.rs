@@ -17,7 +17,7 @@ use super::place::{Placed, alone, computed, earlier_results, join};
 use super::progress::StudyProgress;
 use super::room::at_a_time;
 use super::row::{Row, RowStatus, write_table};
-use super::schedule::{in_order, pools, side_by_side};
+use super::schedule::{Finished, in_order, pools, side_by_side};
 use super::shard::{Shard, by_descending_cost, cost};
 use super::simulate::Simulator;
 use crate::case::{Case, Linear};
@@ -366,9 +366,6 @@ impl Table<'_> {
         Ok(())
     }
 }
-
-/// Hears of a case that has ended.
-pub(super) type Finished<'a> = dyn FnMut(usize, Result<Summary, String>) -> Result<(), StudyError> + 'a;
 
 /// Every case on a core of its own.
 fn on_cores(

@@ -3,7 +3,7 @@
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex};
 
-use super::{HostReport, QueuedCall, lock};
+use super::queue::{HostReport, QueuedCall, lock};
 use crate::compute::traffic::Traffic;
 use crate::compute::{About, Answer, Call, CaseModel, Compute, ComputeError};
 

@@ -12,28 +12,15 @@
 //! depend on the others of the call ([`Compute`]), so neither do results.
 
 mod guest;
+mod queue;
 
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
 pub use self::guest::{Guest, Slot};
+use self::queue::{Answered, HostReport, QueuedCall, lock};
 use crate::compute::select::SharedCalls;
-use crate::compute::{About, Answer, Call, Compute, ComputeError};
-
-/// What the backend says of itself, for all guests.
-struct HostReport {
-    about: About,
-    notes: Vec<String>,
-}
-
-type Answered = Result<Answer, ComputeError>;
-
-/// What a case asks, and the way back to it.
-struct QueuedCall {
-    case: usize,
-    call: Call,
-    reply: Sender<Answered>,
-}
+use crate::compute::{Call, Compute};
 
 /// A backend that will be shared.
 pub struct Host {
@@ -89,8 +76,4 @@ impl Host {
             Err(error) => replies.into_iter().map(|reply| (reply, Err(error.clone()))).collect(),
         }
     }
-}
-
-fn lock(told: &Mutex<HostReport>) -> MutexGuard<'_, HostReport> {
-    told.lock().unwrap_or_else(PoisonError::into_inner)
 }
