@@ -15,8 +15,9 @@ use asperity::internals::linalg::{BlockMatrix, Hierarchy, LinearSolver, Pattern,
 use asperity::internals::simulation::drive::{Drive, Observer, StepView};
 use asperity::internals::simulation::problem::Problem;
 use asperity::internals::solver::Control;
+use asperity::internals::solver::contact_rows::apply_contact;
 use asperity::internals::solver::phases::PhaseTimes;
-use asperity::internals::solver::system::{Boundary, Trial, apply_contact, fixed_unknowns, right_hand_side};
+use asperity::internals::solver::system::{Boundary, Trial, fixed_unknowns, right_hand_side};
 use criterion::{BatchSize, Criterion};
 use processor::Processor;
 

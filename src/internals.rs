@@ -2,36 +2,49 @@
 //! tools: no part of what a version promises.
 
 #[cfg(feature = "cli")]
-#[path = "bench/mod.rs"]
-pub mod bench;
-#[path = "bounded.rs"]
-pub mod bounded;
+pub mod bench {
+    pub use crate::bench::*;
+}
+pub mod bounded {
+    pub use crate::bounded::*;
+}
 #[cfg(feature = "cli")]
-#[path = "cli/mod.rs"]
-pub mod cli;
-#[path = "compute/mod.rs"]
-pub mod compute;
+pub mod cli {
+    pub use crate::cli::*;
+}
+pub mod compute {
+    pub use crate::compute::*;
+}
 #[cfg(feature = "cli")]
-#[path = "conformance/mod.rs"]
-pub mod conformance;
+pub mod conformance {
+    pub use crate::conformance::*;
+}
 #[cfg(feature = "explore")]
-#[path = "explore/mod.rs"]
-pub mod explore;
-#[path = "memory.rs"]
-pub mod memory;
-#[path = "processor.rs"]
-pub mod processor;
+pub mod explore {
+    pub use crate::explore::*;
+}
+pub mod memory {
+    pub use crate::memory::*;
+}
+pub mod processor {
+    pub use crate::processor::*;
+}
 #[cfg(feature = "cli")]
-#[path = "prove/mod.rs"]
-pub mod prove;
-#[path = "quoting.rs"]
-pub mod quoting;
-#[path = "simulation/mod.rs"]
-pub mod simulation;
-#[path = "solver/mod.rs"]
-pub mod solver;
+pub mod prove {
+    pub use crate::prove::*;
+}
+pub mod quoting {
+    pub use crate::quoting::*;
+}
+pub mod simulation {
+    pub use crate::simulation::*;
+}
+pub mod solver {
+    pub use crate::solver::*;
+}
 #[cfg(feature = "cli")]
-#[path = "verify/mod.rs"]
-pub mod verify;
+pub mod verify {
+    pub use crate::verify::*;
+}
 
 pub use asperity_kernels::{contact, element, lanes, linalg, mesh, real};

@@ -69,31 +69,47 @@
 //! them.
 
 pub mod analytical;
+#[cfg(feature = "cli")]
+mod bench;
+mod bounded;
 pub mod case;
+#[cfg(feature = "cli")]
+mod cli;
+#[doc(hidden)]
+mod compute;
+#[cfg(feature = "cli")]
+mod conformance;
 #[cfg(feature = "law")]
 pub mod contact_law;
+#[cfg(feature = "explore")]
+mod explore;
 #[cfg(feature = "law")]
 pub mod law;
+mod memory;
 pub mod output;
+mod processor;
+#[cfg(feature = "cli")]
+mod prove;
+mod quoting;
+#[cfg(feature = "law")]
+mod random;
 pub mod session;
+mod simulation;
+mod solver;
 #[cfg(feature = "law")]
 pub mod study;
+#[cfg(feature = "cli")]
+mod verify;
 
 #[doc(hidden)]
 pub mod internals;
-#[cfg(feature = "law")]
-mod random;
 
 #[doc(inline)]
 pub use asperity_kernels::material;
 pub use case::Case;
 pub use session::{Canceller, Earlier, Options, Outcome, SessionError, Simulation};
 
-#[cfg(feature = "explore")]
-pub(crate) use internals::explore;
-#[cfg(feature = "cli")]
-pub(crate) use internals::{bench, conformance, processor, prove, verify};
-pub(crate) use internals::{bounded, compute, contact, element, lanes, linalg, memory, mesh, quoting, real, simulation, solver};
+use asperity_kernels::{contact, element, lanes, linalg, mesh, real};
 
 /// The Rust of the documents, which runs.
 #[cfg(doctest)]

@@ -19,7 +19,7 @@ use asperity::internals::compute::gpu::{DeviceRequest, Evaluation, Gpu, GpuConte
 use asperity::internals::compute::traffic::Traffic;
 use asperity::internals::simulation::drive::{Drive, Ending, Observer, StepView};
 use asperity::internals::simulation::problem::Problem;
-use asperity::material::{Elasticity, Hardening, Material};
+use asperity::material::{Elasticity, FlowStress, Material};
 use device::device;
 use std::error::Error;
 use std::io::Write;
@@ -195,7 +195,7 @@ fn chunks_give_the_same_bits_as_one_piece() {
     let context = context.with_budget(4 << 20);
     let material = |yield_stress: f64| Material::<f32> {
         elasticity: Elasticity::new(1.0, 0.3),
-        hardening: Hardening::linear(yield_stress, 0.1).unwrap(),
+        hardening: FlowStress::linear(yield_stress, 0.1).unwrap(),
     };
     let points = 1000;
     let materials: Vec<_> = (1..=40).map(|i| material(1e-3 * f64::from(i))).collect();
@@ -245,8 +245,11 @@ fn parts_of_a_device_are_used_side_by_side() {
 #[test]
 fn bounds_checks_do_not_change_a_bit() {
     let Some(context) = device("device_layer", Precision::F32) else { return };
-    let laws =
-        [Hardening::power(1e-3, 0.1, 0.3), Hardening::hollomon(0.01, 5.0, 1.0), Hardening::table(&[[0.0, 1e-3], [0.01, 2e-3]])];
+    let laws = [
+        FlowStress::power(1e-3, 0.1, 0.3),
+        FlowStress::hollomon(0.01, 5.0, 1.0),
+        FlowStress::table(&[[0.0, 1e-3], [0.01, 2e-3]]),
+    ];
     let materials = laws.map(|law| Material::<f32> { elasticity: Elasticity::new(1.0, 0.3), hardening: law.unwrap() });
     let points = 100;
     let relative: Vec<f32> = (0..3 * layout::RELATIVE * points).map(|i| ((i * 7919) % 1009) as f32 * 2e-5 - 1e-2).collect();
@@ -261,7 +264,7 @@ fn bounds_checks_do_not_change_a_bit() {
 #[test]
 fn only_the_active_cases_are_touched() {
     let Some(context) = device("device_layer", Precision::F32) else { return };
-    let material = Material::<f32> { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::ideal(1e-3).unwrap() };
+    let material = Material::<f32> { elasticity: Elasticity::new(1.0, 0.3), hardening: FlowStress::ideal(1e-3).unwrap() };
     let kernel = material::ReturnMapping::new(&context, &vec![material; 3], 2).unwrap();
     let committed = [0.0f32; 3 * 2 * layout::STATE];
     let relative = |size: f32| (0..3 * 2 * layout::RELATIVE).map(|i| size * (i % 7) as f32).collect::<Vec<_>>();

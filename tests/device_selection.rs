@@ -9,14 +9,14 @@ use asperity::internals::compute::select::{DeviceChoice, PrecisionChoice, Select
 use asperity::internals::compute::{CaseModel, Compute, ComputeError};
 use asperity::internals::contact::coulomb::Friction;
 use asperity::internals::mesh::brick::brick;
-use asperity::material::{Elasticity, Hardening, Material};
+use asperity::material::{Elasticity, FlowStress, Material};
 use device::device;
 use std::process::Command;
 use std::sync::Arc;
 
 fn models() -> Vec<CaseModel> {
     let mesh = Arc::new(brick(2, 2, 2, [1.0; 3]).unwrap());
-    let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::ideal(2e-3).unwrap() };
+    let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening: FlowStress::ideal(2e-3).unwrap() };
     let model = CaseModel { mesh, material, friction: Friction::Coulomb(0.3), opponent: None };
     vec![model.clone(), model]
 }

@@ -146,6 +146,10 @@ fn fit_and_predict_through_the_program() {
     let warning = String::from_utf8_lossy(&hard.get_output().stderr).into_owned();
     assert!(warning.contains("hardening exponent"), "{warning}");
 
+    what_no_law_predicts_is_refused(&law, &case);
+}
+
+fn what_no_law_predicts_is_refused(law: &Path, case: &Path) {
     for (set, told) in [
         ("contact.friction=\"stick\"", "stick"),
         // A simulated press gives F_N0 and a0 for one shear.
@@ -154,7 +158,7 @@ fn fit_and_predict_through_the_program() {
         ("path=[{indentation = 0.02}, {shear = 0.001}, {shear = -0.001}]", "goes on after"),
         ("path=[{indentation = 0.02}, {indentation = 0.01}, {shear = 0.001}]", "more than once"),
     ] {
-        let mut args = vec!["law", "predict", text(&law), text(&case), "--set", set];
+        let mut args = vec!["law", "predict", text(law), text(case), "--set", set];
         if told == "stick" {
             args.extend(["--set", "path.1.shear=0.01"]);
         } else {

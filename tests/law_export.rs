@@ -23,7 +23,7 @@ use asperity::law::range::Interval;
 use asperity::law::table::{self, Level, Tabulated};
 use asperity::law::variables::Body;
 use asperity::law::{LawFile, Parameters};
-use asperity::material::hardening::Hardening;
+use asperity::material::FlowStress;
 use programs::has;
 
 /// A made-up law.
@@ -602,7 +602,8 @@ fn the_vectors_go_where_a_contact_can_go() {
 fn the_update_follows_the_law_it_is_made_of() {
     let sphere = ElasticSphere { radius: 0.5, youngs_modulus: 70e3, poissons_ratio: 0.3 };
     for law in laws() {
-        for hardening in [Hardening::ideal(100.0).unwrap(), Hardening::hollomon(400.0, 4.0, 70e3).unwrap(), Hardening::Elastic] {
+        for hardening in [FlowStress::ideal(100.0).unwrap(), FlowStress::hollomon(400.0, 4.0, 70e3).unwrap(), FlowStress::Elastic]
+        {
             let body = Body { sphere, hardening };
             let friction = 0.25;
             let pair = law.contact_parameters(&body, friction).unwrap();
@@ -639,7 +640,7 @@ fn no_path_extracts_work() {
     let mut worst: f64 = 0.0;
     for law in laws() {
         for (stress, friction) in [(20.0, 0.5), (400.0, 0.3), (2500.0, 0.1)] {
-            let pair = law.contact_parameters(&Body { sphere, hardening: Hardening::ideal(stress).unwrap() }, friction).unwrap();
+            let pair = law.contact_parameters(&Body { sphere, hardening: FlowStress::ideal(stress).unwrap() }, friction).unwrap();
             for _ in 0..8 {
                 let deepest = 10f64.powf(random(-4.0, -1.2));
                 let virgin = pair.virgin(deepest);

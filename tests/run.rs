@@ -74,21 +74,8 @@ fn timeless(summary: &Summary) -> Summary {
     Summary { wall_s: 0.0, cpu_s: None, time_by_phase: TimeByPhase::default(), ..summary.clone() }
 }
 
-#[test]
-fn leaves_every_file_of_the_contract() {
-    let scratch = scratch(FULL_SLIP);
-    let output = scratch.run("out", &[]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let dir = scratch.path("out");
-    let all = ["case.toml", "checkpoint.bin", "contact", "fields", "history.csv", "plots", "run.log", "summary.json"];
-    assert_eq!(names(&dir), all);
-
-    let text = fs::read_to_string(dir.join("history.csv")).expect("a history");
-    assert!(text.starts_with("step,segment,h,delta_T,F_N,F_T,a,stick_radius,newton_iterations,cutbacks,"), "{text}");
-    let (history, summary) = results(&dir);
-    let steps: Vec<usize> = history.iter().map(|row| row.step).collect();
-    assert_eq!(steps, (1..=history.len()).collect::<Vec<_>>());
-    let press = history.iter().filter(|row| row.segment == 0).count();
+/// Files of steps: the ends of the segments, and where the ratio of forces passes shares of mu.
+fn tables_and_pictures_are_of_the_path(dir: &Path, history: &[StepRecord], press: usize) {
     let ends = [press, history.len()].map(|step| format!("step_{step:04}"));
     // The contact at the ends of the segments and, for the picture of stick and slip, at four
     // shares of mu on the way.
@@ -109,7 +96,10 @@ fn leaves_every_file_of_the_contract() {
         names(&dir.join("plots")),
         ["contact.svg", "forces.svg", "indentation.svg", "pressure.svg", "ratio.svg", "slip.svg", "stick.svg"]
     );
+}
 
+/// The history ends where the path does, and the summary tells of it.
+fn numbers_are_those_of_the_case(dir: &Path, history: &[StepRecord], summary: &Summary, press: usize) {
     // Pressed to where it was told, then sheared to full slip at constant indentation.
     assert_eq!(history[press - 1].h, 0.02);
     assert!(history[press - 1..].iter().all(|row| row.h == 0.02));
@@ -135,7 +125,10 @@ fn leaves_every_file_of_the_contract() {
     for key in ["F_N0", "a0", "h0", "F_N_slip", "F_T_max", "delta_T_slip", "k_T0", "elements", "unknowns", "newton_iterations"] {
         assert!(json[key].is_number(), "{key}: {}", json[key]);
     }
+}
 
+fn contact_and_fields_are_of_their_steps(dir: &Path, history: &[StepRecord], press: usize) {
+    let (ends, last) = ([press, history.len()].map(|step| format!("step_{step:04}")), history[history.len() - 1]);
     // The contact table adds up to the forces of its step, over both halves.
     let points = read_contact(&dir.join("contact").join(ends[1].clone() + ".csv")).expect("a contact table");
     let sum = |of: fn(&asperity::output::ContactPoint) -> f64| points.iter().map(|point| of(point) * point.area).sum::<f64>();
@@ -151,6 +144,26 @@ fn leaves_every_file_of_the_contract() {
         .map(|rest| rest.split('"').next().expect("an end").parse().expect("a number"))
         .collect();
     assert!(times.len() == 2 && (times[0] - 0.02).abs() < 1e-12 && (times[1] - 0.02 - last.delta_t).abs() < 1e-12, "{times:?}");
+}
+
+#[test]
+fn leaves_every_file_of_the_contract() {
+    let scratch = scratch(FULL_SLIP);
+    let output = scratch.run("out", &[]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let dir = scratch.path("out");
+    let all = ["case.toml", "checkpoint.bin", "contact", "fields", "history.csv", "plots", "run.log", "summary.json"];
+    assert_eq!(names(&dir), all);
+
+    let text = fs::read_to_string(dir.join("history.csv")).expect("a history");
+    assert!(text.starts_with("step,segment,h,delta_T,F_N,F_T,a,stick_radius,newton_iterations,cutbacks,"), "{text}");
+    let (history, summary) = results(&dir);
+    let steps: Vec<usize> = history.iter().map(|row| row.step).collect();
+    assert_eq!(steps, (1..=history.len()).collect::<Vec<_>>());
+    let press = history.iter().filter(|row| row.segment == 0).count();
+    tables_and_pictures_are_of_the_path(&dir, &history, press);
+    numbers_are_those_of_the_case(&dir, &history, &summary, press);
+    contact_and_fields_are_of_their_steps(&dir, &history, press);
 
     // A person is told in three lines what came out, how well, and where it is.
     let told = stdout(&output);

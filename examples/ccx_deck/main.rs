@@ -29,7 +29,7 @@ use asperity::case::{self, Case, Friction, Hold, Opponent, Segment, ShearTarget}
 use asperity::internals::mesh::Mesh;
 use asperity::internals::mesh::connectivity::FACES;
 use asperity::internals::simulation::problem::Problem;
-use asperity::material::Hardening;
+use asperity::material::FlowStress;
 
 use quadratic::Middles;
 
@@ -367,17 +367,17 @@ fn materials(text: &mut String, case: &Case, problem: &Problem) -> Result<(), Fa
         (Some(Opponent::Deforming { material: given, .. }), Some(scaled)) => {
             material(text, "OTHER", given, e, &scaled.hardening)?;
         }
-        _ => material(text, "OTHER", &case.material, e, &Hardening::Elastic)?,
+        _ => material(text, "OTHER", &case.material, e, &FlowStress::Elastic)?,
     }
     text.push_str("*SOLID SECTION, ELSET=SPHERE, MATERIAL=METAL\n*SOLID SECTION, ELSET=OPPONENT, MATERIAL=OTHER\n");
     Ok(())
 }
 
 /// Elasticity and the hardening curve, the law's stress times `unit`; stresses in the case's units.
-fn material(text: &mut String, name: &str, given: &case::Material, unit: f64, law: &Hardening<f64>) -> Result<(), Failed> {
+fn material(text: &mut String, name: &str, given: &case::Material, unit: f64, law: &FlowStress<f64>) -> Result<(), Failed> {
     let (e, nu) = (given.youngs_modulus, given.poissons_ratio);
     writeln!(text, "*MATERIAL, NAME={name}\n*ELASTIC\n{e:.12e}, {nu:.12e}")?;
-    if matches!(law, Hardening::Elastic) {
+    if matches!(law, FlowStress::Elastic) {
         return Ok(());
     }
     text.push_str("*PLASTIC\n");

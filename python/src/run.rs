@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use crate::arguments::{check_length, whole};
 use crate::case::NativeCase;
 use crate::errors::{failed, in_python, refused};
-use crate::wait::{News, Told, wait};
+use crate::wait::{News, NewsSender, wait};
 
 fn device(word: &str) -> PyResult<DeviceChoice> {
     match word {
@@ -84,7 +84,7 @@ pub fn run(
     let work = move |news: std::sync::mpsc::Sender<News>| -> Result<asperity::Outcome, SessionError> {
         let simulation = Simulation::with(&case, options)?;
         simulation.notes().iter().for_each(|note| drop(news.send(News::Message(note.clone()))));
-        simulation.watched_by(Box::new(Told(news))).run()
+        simulation.watched_by(Box::new(NewsSender(news))).run()
     };
     // The simulation has a pool of its own.
     let (outcome, raised) = wait(py, listener.as_ref(), &canceller, Some(NonZeroUsize::MIN), work)?;

@@ -24,9 +24,9 @@ pub enum News {
 }
 
 /// Hands progress on to the thread that waits.
-pub struct Told(pub Sender<News>);
+pub struct NewsSender(pub Sender<News>);
 
-impl Progress for Told {
+impl Progress for NewsSender {
     fn step(&mut self, position: &Position) {
         // Nobody listens any more: the work goes on.
         let _ = self.0.send(News::Step(position.fraction, position.step, position.detail.clone()));

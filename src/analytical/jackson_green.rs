@@ -67,7 +67,7 @@ impl JacksonGreen {
 #[cfg(test)]
 mod tests {
     use super::super::kogut_etsion::KogutEtsion;
-    use super::super::olsson_larsson::{Hardening, OlssonLarsson};
+    use super::super::olsson_larsson::{OlssonLarsson, OlssonLarssonHardening};
     use super::super::{bisect, hertz, johnson};
     use super::*;
 
@@ -104,7 +104,7 @@ mod tests {
         let yield_stress = 40.0;
         let green = JacksonGreen { sphere: STEEL, yield_stress };
         let etsion = KogutEtsion { sphere: STEEL, yield_stress };
-        let larsson = OlssonLarsson { sphere: STEEL, hardening: Hardening::Ideal { yield_stress } };
+        let larsson = OlssonLarsson { sphere: STEEL, hardening: OlssonLarssonHardening::Ideal { yield_stress } };
         let difference = |a: f64, radius: &dyn Fn(f64) -> f64, force: &dyn Fn(f64) -> f64| {
             let h = bisect(0.3 * a * a, 2.0 * a * a, |h| radius(h) - a);
             let hardness = johnson::normalized_hardness(force(h), yield_stress, a) / larsson.normalized_hardness(a) - 1.0;

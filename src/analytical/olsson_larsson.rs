@@ -23,7 +23,7 @@ const IDEAL_C_SQUARED: f64 = 1.43;
 
 /// The hardening laws of the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Hardening {
+pub enum OlssonLarssonHardening {
     /// sigma = sigma_Y.
     Ideal {
         /// Yield stress sigma_Y.
@@ -48,7 +48,7 @@ pub enum Hardening {
     },
 }
 
-impl Hardening {
+impl OlssonLarssonHardening {
     /// Initial yield stress, `youngs_modulus` being needed where it is a meeting point.
     pub fn yield_stress(&self, youngs_modulus: f64) -> f64 {
         match *self {
@@ -155,7 +155,7 @@ pub struct OlssonLarsson {
     /// The sphere.
     pub sphere: ElasticSphere,
     /// Its hardening.
-    pub hardening: Hardening,
+    pub hardening: OlssonLarssonHardening,
 }
 
 impl OlssonLarsson {
@@ -207,23 +207,23 @@ mod tests {
 
     const STEEL: ElasticSphere = ElasticSphere { radius: 1.0, youngs_modulus: 200e3, poissons_ratio: 0.3 };
 
-    fn model(hardening: Hardening) -> OlssonLarsson {
+    fn model(hardening: OlssonLarssonHardening) -> OlssonLarsson {
         OlssonLarsson { sphere: STEEL, hardening }
     }
 
-    fn laws() -> [Hardening; 5] {
+    fn laws() -> [OlssonLarssonHardening; 5] {
         [
-            Hardening::Ideal { yield_stress: 400.0 },
-            Hardening::TwoParameter { coefficient: 1200.0, exponent: 3.0 },
-            Hardening::TwoParameter { coefficient: 1200.0, exponent: 10.0 },
-            Hardening::ThreeParameter { yield_stress: 300.0, coefficient: 2.0, exponent: 3.0 },
-            Hardening::ThreeParameter { yield_stress: 100.0, coefficient: 12.0, exponent: 2.0 },
+            OlssonLarssonHardening::Ideal { yield_stress: 400.0 },
+            OlssonLarssonHardening::TwoParameter { coefficient: 1200.0, exponent: 3.0 },
+            OlssonLarssonHardening::TwoParameter { coefficient: 1200.0, exponent: 10.0 },
+            OlssonLarssonHardening::ThreeParameter { yield_stress: 300.0, coefficient: 2.0, exponent: 3.0 },
+            OlssonLarssonHardening::ThreeParameter { yield_stress: 100.0, coefficient: 12.0, exponent: 2.0 },
         ]
     }
 
     #[test]
     fn the_two_parameter_law_meets_hooke_at_yield() {
-        let law = Hardening::TwoParameter { coefficient: 1000.0, exponent: 4.0 };
+        let law = OlssonLarssonHardening::TwoParameter { coefficient: 1000.0, exponent: 4.0 };
         let yield_stress = law.yield_stress(200e3);
         assert!((1000.0 * (yield_stress / 200e3f64).powf(0.25) / yield_stress - 1.0).abs() < 1e-13);
         assert!(((1000f64.powi(4) / 200e3).powf(1.0 / 3.0) / yield_stress - 1.0).abs() < 1e-13);
@@ -297,7 +297,7 @@ mod tests {
     fn known_numbers_of_the_ideal_case() {
         // Two independent axisymmetric codes; the band of the closed forms is 6 % in Hbar and 8 %
         // in c^2.
-        let model = model(Hardening::Ideal { yield_stress: 400.0 });
+        let model = model(OlssonLarssonHardening::Ideal { yield_stress: 400.0 });
         for (h, force, radius) in [(0.02, 148.8, 0.2087), (0.01, 72.6, 0.141), (0.005, 34.6, 0.096)] {
             let (f, a) = (model.force(h), model.contact_radius(h));
             let c2 = a * a / (radius * radius);

@@ -6,14 +6,14 @@ use std::time::Instant;
 
 use super::count::{Counted, operations};
 use super::input::{mesh, models, squeezed};
-use super::report::{On, Outcome, Report, Row, Setup};
+use super::report::{Measurement, On, Report, Row, Setup};
 use super::timing::{Timing, gather, measure as repeat, of_kernels};
 use super::traffic::Sizes;
 use super::{BenchError, Options, Pools};
 use crate::compute::cpu::Cpu;
 use crate::compute::gpu::{DeviceReal, Evaluation, Gpu, GpuContext};
 use crate::compute::handle::at_contact;
-use crate::compute::{Answer, Blocks, Call, CaseModel, Compute, ComputeError, Outcome as Went};
+use crate::compute::{Answer, Blocks, Call, CaseModel, Compute, ComputeError, Outcome};
 use crate::memory;
 use crate::mesh::Mesh;
 
@@ -90,9 +90,9 @@ impl Calls {
     }
 }
 
-fn valid(outcome: Went) -> Result<(), ComputeError> {
+fn valid(outcome: Outcome) -> Result<(), ComputeError> {
     match outcome {
-        Went::Valid => Ok(()),
+        Outcome::Valid => Ok(()),
         outcome => Err(ComputeError::Device(format!("the bench's displacement was refused: {outcome:?}"))),
     }
 }
@@ -147,7 +147,7 @@ pub fn measure<R: DeviceReal>(
                 items,
                 bytes: batch * bytes,
                 operations: batch as u64 * operations[kind],
-                outcome: Outcome::Skipped(String::new()),
+                outcome: Measurement::Skipped(String::new()),
             }
         };
         let room = memory_for(&mesh, &sizes, batch, size_of::<R>());

@@ -6,7 +6,7 @@ use super::BenchError;
 use crate::compute::CaseModel;
 use crate::contact::coulomb::Friction;
 use crate::lanes::Lanes;
-use crate::material::{Elasticity, Hardening, Material, MaterialError, PointState, return_mapping};
+use crate::material::{Elasticity, FlowStress, Material, MaterialError, PointState, return_mapping};
 use crate::mesh::sphere::{SphereSpec, sphere_mesh};
 use crate::mesh::{Mesh, MeshError};
 use crate::random::Seeded;
@@ -18,13 +18,13 @@ use crate::real::Real;
 /// None, unless the constants here are no law.
 pub fn laws<R: Real>() -> Result<Vec<(&'static str, Material<R>)>, MaterialError> {
     let laws = [
-        Hardening::Elastic,
-        Hardening::ideal(2e-3)?,
-        Hardening::linear(2e-3, 0.05)?,
-        Hardening::power(2e-3, 5e-3, 0.3)?,
-        Hardening::hollomon(0.02, 3.0, 1.0)?,
-        Hardening::voce(2e-3, 5e-3, 20.0)?,
-        Hardening::table(&[[0.0, 2e-3], [0.01, 3e-3], [0.05, 3.5e-3], [0.3, 5e-3]])?,
+        FlowStress::Elastic,
+        FlowStress::ideal(2e-3)?,
+        FlowStress::linear(2e-3, 0.05)?,
+        FlowStress::power(2e-3, 5e-3, 0.3)?,
+        FlowStress::hollomon(0.02, 3.0, 1.0)?,
+        FlowStress::voce(2e-3, 5e-3, 20.0)?,
+        FlowStress::table(&[[0.0, 2e-3], [0.01, 3e-3], [0.05, 3.5e-3], [0.3, 5e-3]])?,
     ];
     Ok(laws.map(|hardening| (hardening.law().word(), Material { elasticity: Elasticity::new(1.0, 0.3), hardening })).into())
 }
@@ -43,7 +43,7 @@ pub struct MaterialPoint<R> {
 pub fn material_points<R: Real>(material: &Material<R>, count: usize) -> Vec<MaterialPoint<R>> {
     let mut random = Seeded::new(1);
     let mut points = Vec::with_capacity(count);
-    let never = matches!(material.hardening, Hardening::Elastic);
+    let never = matches!(material.hardening, FlowStress::Elastic);
     // A step that does not yield twice is drawn again; so few are not that this ends.
     while points.len() < count {
         let relative = std::array::from_fn(|_| std::array::from_fn(|_| R::of(0.01 * random.between(-1.0, 1.0))));
@@ -94,7 +94,7 @@ pub fn models(mesh: &Mesh, count: usize) -> Result<Vec<CaseModel>, BenchError> {
         let mut mesh = mesh.clone();
         let size = random.between(0.9, 1.1);
         mesh.nodes.iter_mut().flatten().for_each(|x| *x *= size);
-        let hardening = Hardening::power(random.between(1e-3, 3e-3), random.between(3e-3, 6e-3), random.between(0.2, 0.5))?;
+        let hardening = FlowStress::power(random.between(1e-3, 3e-3), random.between(3e-3, 6e-3), random.between(0.2, 0.5))?;
         let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening };
         Ok(CaseModel { mesh: Arc::new(mesh), material, friction: Friction::Coulomb(random.between(0.1, 0.5)), opponent: None })
     };

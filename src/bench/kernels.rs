@@ -33,7 +33,7 @@ pub struct Kernel {
 
 /// The kernels of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Kernels {
+pub struct KernelShares {
     /// Cases at a time.
     pub batch: usize,
     /// The device.
@@ -52,7 +52,7 @@ pub struct Kernels {
     pub kernels: Vec<Kernel>,
 }
 
-impl Kernels {
+impl KernelShares {
     /// What the kernels of a run of `batch` cases on `device` came to, which took `wall_s` seconds,
     /// where a copy moves `copy` bytes a second.
     pub fn new((batch, device): (usize, String), wall_s: f64, copy: f64, times: &KernelTimes) -> Self {
@@ -95,7 +95,7 @@ impl Kernels {
 }
 
 /// The kernels of a run as a table, and what they are together beside its time on the wall.
-pub fn table(of: &Kernels) -> String {
+pub fn table(of: &KernelShares) -> String {
     let mut text = String::new();
     let jobs = if of.batch == 1 { "job" } else { "jobs" };
     let _ = writeln!(text, "kernels of {} {jobs} on {}, in another run, with timestamps", of.batch, of.device);
@@ -158,7 +158,7 @@ mod tests {
 
     #[test]
     fn the_longest_comes_first_with_its_share_of_a_copy() {
-        let of = Kernels::new((2, "a card".to_owned()), 5.0, 8e9, &times(true, 3));
+        let of = KernelShares::new((2, "a card".to_owned()), 5.0, 8e9, &times(true, 3));
         let first = &of.kernels[0];
         assert_eq!(
             (first.kernel, first.share, first.bytes_per_s, first.share_of_copy),
@@ -174,7 +174,7 @@ mod tests {
 
     #[test]
     fn without_timestamps_that_is_said() {
-        let of = Kernels::new((1, "a card".to_owned()), 5.0, 8e9, &times(false, 0));
+        let of = KernelShares::new((1, "a card".to_owned()), 5.0, 8e9, &times(false, 0));
         assert!(of.kernels_s.is_none() && of.kernels.iter().all(|kernel| kernel.seconds.is_none() && kernel.share.is_none()));
         let text = table(&of);
         assert!(text.contains("NO TIMES BY KERNEL: a card has no timestamps"), "{text}");

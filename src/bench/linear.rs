@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::input::{mesh, models};
-use super::report::{On, Outcome, Report, Row};
+use super::report::{Measurement, On, Report, Row};
 use super::timing::{Timing, measure as repeat, of_kernels};
 use super::{BenchError, Options};
 use crate::compute::gpu::linear::parts::Part;
@@ -51,7 +51,7 @@ pub fn measure(
                 items: batch * mesh.nodes.len(),
                 bytes: size_of::<f32>() * (batch * account.numbers + account.shared),
                 operations: (batch * account.operations) as u64,
-                outcome: Outcome::Skipped(String::new()),
+                outcome: Measurement::Skipped(String::new()),
             };
             let times = known.map(|(_, call, kernels)| (call, Some(kernels))).ok_or_else(|| reason.clone());
             report.rows.push(row.with(times, report.header.copy.device));

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::count::{Counted, operations};
 use super::input::{EightPoints, MaterialPoint, laws, material_points, side_by_side};
-use super::report::{On, Outcome, Report, Row, Setup};
+use super::report::{Measurement, On, Report, Row, Setup};
 use super::timing::{Timing, measure as repeat, of_kernels};
 use super::traffic::{point_on_cpu, point_on_device};
 use super::{BenchError, Options, Pools};
@@ -89,7 +89,7 @@ pub fn measure<R: DeviceReal>(
                 items,
                 bytes: items * word_bytes(size_of::<R>()),
                 operations: (of_a_point * items as f64) as u64,
-                outcome: Outcome::Skipped(String::new()),
+                outcome: Measurement::Skipped(String::new()),
             };
             let copy = report.header.copy;
             if let Some(context) = context {

@@ -125,7 +125,7 @@ pub enum On {
 /// What memory or the device made of a row.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Outcome {
+pub enum Measurement {
     /// Measured.
     Measured(Measured),
     /// Not measured, for this reason: it does not fit, or the device cannot.
@@ -172,26 +172,26 @@ pub struct Row {
     /// Floating-point operations of a call.
     pub operations: u64,
     /// The numbers.
-    pub outcome: Outcome,
+    pub outcome: Measurement,
 }
 
 impl Row {
     /// The numbers, if there are any.
     pub fn measured(&self) -> Option<&Measured> {
         match &self.outcome {
-            Outcome::Measured(measured) => Some(measured),
-            Outcome::Skipped(_) => None,
+            Measurement::Measured(measured) => Some(measured),
+            Measurement::Skipped(_) => None,
         }
     }
 
     /// The row with its times (or why there are none), where a copy moves `copy` bytes a second.
     pub fn with(mut self, times: Result<(Timing, Option<f64>), String>, copy: Option<f64>) -> Self {
         self.outcome = match times {
-            Err(reason) => Outcome::Skipped(reason),
+            Err(reason) => Measurement::Skipped(reason),
             Ok((call, kernels_ms)) => {
                 let seconds = 1e-3 * kernels_ms.unwrap_or(call.median_ms);
                 let bytes_per_s = self.bytes as f64 / seconds;
-                Outcome::Measured(Measured {
+                Measurement::Measured(Measured {
                     call,
                     kernels_ms,
                     items_per_s: self.items as f64 / (1e-3 * call.median_ms),
@@ -291,7 +291,7 @@ mod tests {
             items: 100,
             bytes: 4000,
             operations: 8000,
-            outcome: Outcome::Skipped(String::new()),
+            outcome: Measurement::Skipped(String::new()),
         };
         let call = Timing { first_ms: 9.0, median_ms: 4.0, min_ms: 3.0, max_ms: 5.0, repetitions: 3 };
         let on_device = row.clone().with(Ok((call, Some(2.0))), Some(4e6));
@@ -299,6 +299,6 @@ mod tests {
         assert_eq!((m.items_per_s, m.bytes_per_s, m.operations_per_s, m.share_of_copy), (25e3, 2e6, 4e6, 0.5));
         let on_cpu = row.clone().with(Ok((call, None)), Some(4e6));
         assert_eq!(on_cpu.measured().unwrap().bytes_per_s, 1e6);
-        assert_eq!(row.with(Err("too large".into()), None).outcome, Outcome::Skipped("too large".into()));
+        assert_eq!(row.with(Err("too large".into()), None).outcome, Measurement::Skipped("too large".into()));
     }
 }

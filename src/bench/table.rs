@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use super::report::{Header, On, Outcome, Report, Row};
+use super::report::{Header, Measurement, On, Report, Row};
 
 /// Columns of a place: its time, rate, operations and share of a copy.
 const HEAD: [&str; 17] = [
@@ -52,10 +52,10 @@ pub fn table(report: &Report) -> String {
         if group.first().is_some_and(|r| std::ptr::eq(*r, first)) {
             lines.push(line(&group));
             skipped.extend(group.iter().filter_map(|row| match &row.outcome {
-                Outcome::Skipped(reason) => {
+                Measurement::Skipped(reason) => {
                     Some(format!("{}, {}, {}, batch of {}: {reason}", row.evaluation, row.law, row.precision, row.batch))
                 }
-                Outcome::Measured(_) => None,
+                Measurement::Measured(_) => None,
             }));
         }
         rows.next();

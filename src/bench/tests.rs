@@ -1,11 +1,12 @@
 use super::input::{laws, material_points, models, side_by_side, squeezed};
 use super::report::On;
+use super::timing::Patience;
 use super::traffic::Sizes;
 use super::*;
 use crate::compute::Outcome;
 use crate::compute::cpu::Cpu;
 use crate::compute::handle::at;
-use crate::material::{Hardening, return_mapping};
+use crate::material::{FlowStress, return_mapping};
 use crate::real::Real;
 
 /// So small that debug builds do it in a second.
@@ -21,7 +22,7 @@ fn every_point_yields_and_input_is_the_same_in_every_run() {
             let points = material_points(&material, 200);
             assert_eq!(points, material_points(&material, 200), "{name}");
             let yields = |p: &input::MaterialPoint<R>| return_mapping(&material, &p.relative, &p.state).unwrap().yielding;
-            let elastic = matches!(material.hardening, Hardening::Elastic);
+            let elastic = matches!(material.hardening, FlowStress::Elastic);
             assert!(points.iter().all(|p| yields(p) != elastic), "{name}");
             assert_eq!(side_by_side(&points).len(), 25);
             assert_eq!(side_by_side(&points)[3].relative[1][2].0[5], points[29].relative[1][2]);

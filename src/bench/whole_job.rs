@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::kernels::{self, Kernels};
+use super::kernels::{self, KernelShares};
 use super::{BenchError, copy};
 use crate::compute::gpu::{DeviceRequest, GpuContext};
 use crate::compute::select::{DeviceChoice, Devices, PrecisionChoice, SharedCalls};
@@ -97,7 +97,7 @@ pub struct WholeReport {
     /// The jobs.
     pub jobs: Vec<WholeJob>,
     /// Their kernels on the device, of the smallest and the largest batch.
-    pub kernels: Vec<Kernels>,
+    pub kernels: Vec<KernelShares>,
 }
 
 /// Runs the jobs; `say` is told which.
@@ -145,11 +145,11 @@ fn copy_rate(options: &WholeJobs) -> Result<f64, BenchError> {
 }
 
 /// The kernels of a batch, which is computed for them alone: timestamps cost time.
-fn profiled(options: &WholeJobs, batch: usize, copied: f64) -> Result<Option<Kernels>, BenchError> {
+fn profiled(options: &WholeJobs, batch: usize, copied: f64) -> Result<Option<KernelShares>, BenchError> {
     let begun = Instant::now();
     let devices = Devices::profiled(options.device).map_err(StudyError::from)?;
     let job = on(options, (options.device, &devices), batch, begun)?;
-    Ok(devices.kernel_times().map(|times| Kernels::new((batch, job.device), job.wall_s, copied, &times)))
+    Ok(devices.kernel_times().map(|times| KernelShares::new((batch, job.device), job.wall_s, copied, &times)))
 }
 
 /// Whole jobs on a device that was opened at `begun`, or on the CPU.

@@ -4,7 +4,8 @@ use serde::Serialize;
 
 use super::error::CaseError;
 use super::reader::Reader;
-use crate::material::{HardeningLaw, hollomon_yield_stress};
+use crate::material::{FlowStress, HardeningLaw, MaterialError, hollomon_yield_stress};
+use crate::real::Real;
 
 /// Yield stress sigma_y(alpha) over the equivalent plastic strain alpha >= 0. Every law but
 /// `Elastic` is isotropic J2 hardening that never softens.
@@ -123,6 +124,44 @@ impl Hardening {
             points.iter_mut().for_each(|[_, value]| *value /= stress);
         }
         scaled
+    }
+
+    /// Its flow stress; `youngs_modulus` in the unit of its stresses.
+    ///
+    /// # Errors
+    /// [`MaterialError`] for parameters that no law has.
+    pub fn law<R: Real>(&self, youngs_modulus: f64) -> Result<FlowStress<R>, MaterialError> {
+        match *self {
+            Hardening::Elastic => Ok(FlowStress::Elastic),
+            Hardening::Ideal { yield_stress } => FlowStress::ideal(yield_stress),
+            Hardening::Linear { yield_stress, modulus } => FlowStress::linear(yield_stress, modulus),
+            Hardening::Power { yield_stress, coefficient, exponent } => FlowStress::power(yield_stress, coefficient, exponent),
+            Hardening::Hollomon { coefficient, exponent } => FlowStress::hollomon(coefficient, exponent, youngs_modulus),
+            Hardening::Voce { yield_stress, saturation_stress, rate } => FlowStress::voce(yield_stress, saturation_stress, rate),
+            Hardening::Table { ref points } => FlowStress::table(points),
+        }
+    }
+
+    /// The key by which it says where it yields first.
+    pub(super) fn yield_key(&self) -> &'static str {
+        match self {
+            Hardening::Hollomon { .. } => "coefficient",
+            Hardening::Table { .. } => "points",
+            _ => "yield_stress",
+        }
+    }
+
+    /// What it comes to at a plastic strain of 1, or at its end, from first yield on, and the key
+    /// that says so; `None` of one that does not harden.
+    pub(super) fn strength(&self, yield_stress: f64) -> Option<(&'static str, f64)> {
+        Some(match self {
+            Hardening::Elastic | Hardening::Ideal { .. } => return None,
+            Hardening::Linear { modulus, .. } => ("modulus", yield_stress + modulus),
+            Hardening::Power { coefficient, .. } => ("coefficient", yield_stress + coefficient),
+            Hardening::Hollomon { coefficient, .. } => ("coefficient", *coefficient),
+            Hardening::Voce { saturation_stress, .. } => ("saturation_stress", *saturation_stress),
+            Hardening::Table { points } => ("points", points.last().map_or(yield_stress, |point| point[1])),
+        })
     }
 
     /// Reads `[material.hardening]`.

@@ -1,17 +1,7 @@
 //! What was probably meant: by a word, by a key, by a number, by a line that is not TOML.
 
 use super::keys::{KEYS, TABLES};
-
-/// The known word most like `name`, unless they have little in common.
-pub fn nearest(name: &str, known: &[&str]) -> Option<String> {
-    let (best, likeness) = most_like(name, known.iter().copied())?;
-    (likeness > 0.75).then(|| best.to_owned())
-}
-
-fn most_like<'k>(name: &str, known: impl Iterator<Item = &'k str>) -> Option<(&'k str, f64)> {
-    let name = name.to_lowercase();
-    known.map(|key| (key, strsim::jaro_winkler(&name, key))).max_by(|left, right| left.1.total_cmp(&right.1))
-}
+use super::likeness::{most_like, nearest};
 
 /// What an unknown key of a table was meant to be: the dotted key if another table has one of this
 /// name, else one of the `known` of its own that resembles it, else one of another table that does.

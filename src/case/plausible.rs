@@ -166,25 +166,12 @@ fn of_material(table: &str, material: &Material, doubts: &mut Vec<Doubt>) {
     let Some(yield_stress) = law.yield_stress(modulus) else { return };
     let ratio = modulus / yield_stress;
     if !within(ratio, YIELD_RATIOS) {
-        let key = match law {
-            Hardening::Hollomon { .. } => "coefficient",
-            Hardening::Table { .. } => "points",
-            _ => "yield_stress",
-        };
         let what = format!(
             "puts E/sigma_Y at {ratio:.3e}; known materials have 10 to 10,000. Check that youngs_modulus and the stresses are in one unit"
         );
-        doubt(key, what);
+        doubt(law.yield_key(), what);
     }
-    // What hardening comes to at a plastic strain of 1, or at its end.
-    let (key, strength) = match law {
-        Hardening::Elastic | Hardening::Ideal { .. } => return,
-        Hardening::Linear { modulus, .. } => ("modulus", yield_stress + modulus),
-        Hardening::Power { coefficient, .. } => ("coefficient", yield_stress + coefficient),
-        Hardening::Hollomon { coefficient, .. } => ("coefficient", *coefficient),
-        Hardening::Voce { saturation_stress, .. } => ("saturation_stress", *saturation_stress),
-        Hardening::Table { points } => ("points", points.last().map_or(yield_stress, |point| point[1])),
-    };
+    let Some((key, strength)) = law.strength(yield_stress) else { return };
     if strength > modulus {
         doubt(
             key,

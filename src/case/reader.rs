@@ -6,7 +6,8 @@ use std::ops::RangeInclusive;
 
 use super::document::{Document, Entry, Value};
 use super::error::{CaseError, Place};
-use super::hints::{key_meant, nearest, number_meant};
+use super::hints::{key_meant, number_meant};
+use super::likeness::nearest;
 
 /// One table of the document.
 pub struct Reader<'d> {

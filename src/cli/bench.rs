@@ -8,7 +8,7 @@ use clap::Args;
 
 use super::backend::device_or_variable;
 use super::options::{Device, Verbosity};
-use super::{CliError, Outcome};
+use super::{CliError, Exit};
 use crate::bench::whole_job::{self, WholeJobs};
 use crate::bench::{self, BenchError, Options, table};
 use crate::compute::select::{self, DeviceChoice};
@@ -49,7 +49,7 @@ pub struct BenchArgs {
 }
 
 /// Measures, prints the table and writes the numbers.
-pub fn bench(args: &BenchArgs) -> Result<Outcome, CliError> {
+pub fn bench(args: &BenchArgs) -> Result<Exit, CliError> {
     args.verbosity.start_log();
     let device = match device_or_variable(args.device) {
         DeviceChoice::Auto => bench::Device::Auto,
@@ -81,11 +81,11 @@ pub fn bench(args: &BenchArgs) -> Result<Outcome, CliError> {
     if let Some(path) = &args.out {
         write_own(path, |file| file.write_all(report.to_json().as_bytes()))?;
     }
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }
 
 /// Runs whole jobs, prints their table and writes the numbers.
-fn whole_job(args: &BenchArgs, options: &Options, say: &mut dyn FnMut(&str)) -> Result<Outcome, CliError> {
+fn whole_job(args: &BenchArgs, options: &Options, say: &mut dyn FnMut(&str)) -> Result<Exit, CliError> {
     let device = match device_or_variable(args.device) {
         // Without a device worth using there are the CPU's rows alone.
         DeviceChoice::Auto if !select::is_there(DeviceChoice::Auto).unwrap_or(false) => DeviceChoice::Cpu,
@@ -102,5 +102,5 @@ fn whole_job(args: &BenchArgs, options: &Options, say: &mut dyn FnMut(&str)) -> 
     if let Some(path) = &args.out {
         write_own(path, |file| file.write_all(json().as_bytes()))?;
     }
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }

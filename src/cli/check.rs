@@ -6,7 +6,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::input::Input;
-use super::{CliError, Outcome, print, print_json};
+use super::{CliError, Exit, print, print_json};
 use crate::case::{Case, estimated_elements, estimated_memory};
 use crate::simulation::problem::{press_steps, shear_steps};
 use crate::study::{Study, StudyCase, estimated_seconds};
@@ -31,7 +31,7 @@ pub struct CheckArgs {
 
 /// Loads and checks the case and prints it as TOML under its size; so the first case of a study,
 /// after a line on the size of its grid.
-pub fn check(args: &CheckArgs) -> Result<Outcome, CliError> {
+pub fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let input = Input::read(&args.case)?;
     if input.is_study() {
         if let Some(argument) = args.set.first() {
@@ -44,7 +44,7 @@ pub fn check(args: &CheckArgs) -> Result<Outcome, CliError> {
         } else {
             print(&study_text(&study))?
         }
-        return Ok(Outcome::Done);
+        return Ok(Exit::Done);
     }
     let case = input.case(&args.set)?;
     input.check_room(&case, &args.set)?;
@@ -53,7 +53,7 @@ pub fn check(args: &CheckArgs) -> Result<Outcome, CliError> {
     } else {
         print(&case_text(&case))?
     }
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }
 
 fn study_text(study: &Study) -> String {

@@ -4,14 +4,14 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::{CliError, Outcome};
+use super::{CliError, Exit};
 use crate::quoting;
 use crate::study::slurm::{self, Slurm};
 use crate::study::{self, Merged, Study, StudyDirectory};
 
 /// Writes the scripts, whose tasks have these `options` of the command too, and submits them if
 /// that is wanted.
-pub fn slurm(study: &Study, arguments: &[String], out: &Path, options: &[String], submit: bool) -> Result<Outcome, CliError> {
+pub fn slurm(study: &Study, arguments: &[String], out: &Path, options: &[String], submit: bool) -> Result<Exit, CliError> {
     let slurm = Slurm::parse(arguments)?;
     let program = super::program().map_err(|source| CliError::Out { dir: out.to_owned(), what: "find this program", source })?;
     slurm::check(out, &program)?;
@@ -20,7 +20,7 @@ pub fn slurm(study: &Study, arguments: &[String], out: &Path, options: &[String]
     let script = quoting::path(&scripts.submit);
     if !submit {
         super::print(&format!("{}, {} tasks; to submit them: bash {script}\n", study.size(), slurm.tasks))?;
-        return Ok(Outcome::Done);
+        return Ok(Exit::Done);
     }
     let failed = |what: String| CliError::Submit { script: scripts.submit.clone(), what };
     let output =
@@ -30,11 +30,11 @@ pub fn slurm(study: &Study, arguments: &[String], out: &Path, options: &[String]
         return Err(failed(format!("sbatch did not take them: {}", said.split_whitespace().collect::<Vec<_>>().join(" "))));
     }
     super::print(&format!("{}: {}", study.size(), String::from_utf8_lossy(&output.stdout)))?;
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }
 
 /// Joins directories and says what is missing.
-pub fn merge(sources: &[PathBuf], out: &Path, quiet: bool) -> Result<Outcome, CliError> {
+pub fn merge(sources: &[PathBuf], out: &Path, quiet: bool) -> Result<Exit, CliError> {
     const MOST: usize = 20;
     let Merged { report, copied, missing, busy } = study::merge(sources, out)?;
     let dir = out.display();
@@ -57,11 +57,11 @@ pub fn merge(sources: &[PathBuf], out: &Path, quiet: bool) -> Result<Outcome, Cl
             quoting::path(out.join("study.toml")),
             quoting::path(out)
         );
-        return Ok(Outcome::Interrupted);
+        return Ok(Exit::Interrupted);
     }
     if let Some((id, reason)) = &report.first_failure {
         let _ = writeln!(std::io::stderr(), "error: {} cases failed, the first in {dir}/cases/{id}: {reason}", report.failed);
-        return Ok(Outcome::CasesFailed);
+        return Ok(Exit::CasesFailed);
     }
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }

@@ -7,7 +7,7 @@ use std::str::FromStr;
 use clap::Args;
 use serde_json::{Map, Value, json};
 
-use super::{CliError, Outcome, print, print_json};
+use super::{CliError, Exit, print, print_json};
 use crate::case::{Case, PictureFormat, PictureWidth};
 use crate::output::plots::axes::{Axes, AxisUnits};
 use crate::output::plots::{OverlaidRun, Sheet, View, plot_overlay};
@@ -97,7 +97,7 @@ const COSTS: [Cost; 4] = [
 ];
 
 /// Prints the table and draws the picture.
-pub fn compare(args: &CompareArgs) -> Result<Outcome, CliError> {
+pub fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
     let runs = args.dirs.iter().map(|dir| Run::read(dir)).collect::<Result<Vec<_>, _>>()?;
     let unlike = runs.iter().any(|run| run.scales() != runs[0].scales());
     let overlaid: Vec<OverlaidRun<'_>> = runs
@@ -122,7 +122,7 @@ pub fn compare(args: &CompareArgs) -> Result<Outcome, CliError> {
         // A closed stderr does not change the comparison.
         let _ = writeln!(std::io::stderr(), "warning: {}: {}", run.name, run.summary.status);
     }
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }
 
 fn picture_file(text: &str) -> Result<PathBuf, String> {

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::{CliError, Outcome};
+use super::{CliError, Exit};
 use crate::compute::gpu::adapters;
 use crate::compute::gpu::drivers::Drivers;
 use crate::compute::gpu::report::{Surroundings, report, report_json};
@@ -20,7 +20,7 @@ pub struct DevicesArgs {
 }
 
 /// Prints the adapters and the choices; a machine without any is no error.
-pub fn devices(args: &DevicesArgs) -> Result<Outcome, CliError> {
+pub fn devices(args: &DevicesArgs) -> Result<Exit, CliError> {
     let adapters = adapters::adapters();
     let around = Surroundings {
         adapter: adapters::wanted_name(),
@@ -33,5 +33,5 @@ pub fn devices(args: &DevicesArgs) -> Result<Outcome, CliError> {
     } else {
         super::print(&report(&adapters, &around))?;
     }
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use clap::Args;
 
-use super::{CliError, Outcome, print};
+use super::{CliError, Exit, print};
 use crate::case::keys::{self, KEYS, Key, Presence, TABLES};
 
 /// What `explain` says of the tables of a study file, which are not keys of a case.
@@ -43,14 +43,14 @@ pub struct ExplainArgs {
 }
 
 /// Prints what there is to say of the key.
-pub fn explain(args: &ExplainArgs) -> Result<Outcome, CliError> {
+pub fn explain(args: &ExplainArgs) -> Result<Exit, CliError> {
     let Some(name) = &args.key else {
         print(&list())?;
-        return Ok(Outcome::Done);
+        return Ok(Exit::Done);
     };
     if let Some((name, text)) = STUDY.iter().find(|(table, _)| table == name) {
         print(&format!("[{name}] of a study file\n{}", indented(text)))?;
-        return Ok(Outcome::Done);
+        return Ok(Exit::Done);
     }
     // A key of a study stands below base, or in quotes in the grid.
     let found = keys::find(name.strip_prefix("base.").unwrap_or(name));
@@ -59,7 +59,7 @@ pub fn explain(args: &ExplainArgs) -> Result<Outcome, CliError> {
     }
     let texts: Vec<String> = found.into_iter().map(said).collect();
     print(&texts.join("\n"))?;
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }
 
 /// Every key in a line, table by table.

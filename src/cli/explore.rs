@@ -12,9 +12,9 @@ use super::backend::{device_choice, precision_choice};
 use super::input::Input;
 use super::options::DeviceArgs;
 use super::signals::stop_flag;
-use super::{CliError, Outcome, print};
+use super::{CliError, Exit, print};
 use crate::case::Case;
-use crate::explore::{Beginning, End, Explorer, FIRST_CASE, Place, Server, StudyCases, read_run, token};
+use crate::explore::{Beginning, End, Explorer, FIRST_CASE, Resources, Server, StudyCases, read_run, token};
 use crate::law::LawFile;
 use crate::law::file::BUILT_IN;
 
@@ -50,7 +50,7 @@ pub struct ExploreArgs {
 }
 
 /// Serves the page until it is told to end.
-pub fn explore(args: &ExploreArgs) -> Result<Outcome, CliError> {
+pub fn explore(args: &ExploreArgs) -> Result<Exit, CliError> {
     let stop = stop_flag()?;
     let law = LawFile::read_or_built_in(&args.law)?;
     let earlier = args.case.as_deref().filter(|case| case.is_dir()).map(read_run).transpose()?;
@@ -62,7 +62,7 @@ pub fn explore(args: &ExploreArgs) -> Result<Outcome, CliError> {
     let study = args.study.as_deref().map(StudyCases::read).transpose()?.unwrap_or_default();
     let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
     let threads = args.device.threads.or_else(|| NonZeroUsize::new(cores - 1)).unwrap_or(NonZeroUsize::MIN);
-    let place = Place { device: device_choice(&args.device), precision: precision_choice(&args.device), threads };
+    let place = Resources { device: device_choice(&args.device), precision: precision_choice(&args.device), threads };
     let beginning = Beginning { law, base, study, earlier, place, tell };
     let explorer = Arc::new(Explorer::new(beginning));
     let failed = |source| CliError::Serve { port: args.port, source };
@@ -81,7 +81,7 @@ pub fn explore(args: &ExploreArgs) -> Result<Outcome, CliError> {
         End::Stopped => tell("ended"),
         End::Idle => tell("ended, as nobody asked for anything for so long"),
     }
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }
 
 /// Says something on stderr; a closed one changes nothing.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-use super::{CliError, Outcome, print};
+use super::{CliError, Exit, print};
 use crate::case::keys::LAWS;
 use crate::case::{short_case, starter_case};
 use crate::output::write_atomically;
@@ -32,11 +32,11 @@ pub struct InitArgs {
 }
 
 /// Writes the file and says what to do with it.
-pub fn init(args: &InitArgs) -> Result<Outcome, CliError> {
+pub fn init(args: &InitArgs) -> Result<Exit, CliError> {
     let case = if args.short { short_case } else { starter_case };
     if args.name.as_os_str() == "-" {
         print(&case(&args.material, "case.toml"))?;
-        return Ok(Outcome::Done);
+        return Ok(Exit::Done);
     }
     let mut file = args.name.clone();
     if file.extension().is_none() {
@@ -48,5 +48,5 @@ pub fn init(args: &InitArgs) -> Result<Outcome, CliError> {
     }
     write_atomically(&file, |out| out.write_all(case(&args.material, &name).as_bytes()))?;
     print(&format!("{} written; `asperity run {name}` runs it\n", file.display()))?;
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }

@@ -14,7 +14,7 @@ use super::law_check::{CheckArgs, check_law};
 use super::law_compose::{ComposeArgs, compose_tables};
 use super::law_export::{ExportArgs, export_law};
 use super::law_tabulate::{TabulateArgs, tabulate};
-use super::{CliError, Outcome, print, print_json};
+use super::{CliError, Exit, print, print_json};
 use crate::case::Case;
 use crate::contact_law::path::PathPoint;
 use crate::law::file::BUILT_IN;
@@ -110,7 +110,7 @@ pub struct PredictArgs {
 }
 
 /// Runs a subcommand of `asperity law`.
-pub fn law(args: &LawArgs) -> Result<Outcome, CliError> {
+pub fn law(args: &LawArgs) -> Result<Exit, CliError> {
     match &args.command {
         LawCommand::Fit(args) => fit_law(args),
         LawCommand::Tabulate(args) => tabulate(args),
@@ -121,7 +121,7 @@ pub fn law(args: &LawArgs) -> Result<Outcome, CliError> {
     }
 }
 
-fn fit_law(args: &FitArgs) -> Result<Outcome, CliError> {
+fn fit_law(args: &FitArgs) -> Result<Exit, CliError> {
     let path = args.dir.join("law.json");
     let reversal_file = args.reversal.as_deref().unwrap_or(Path::new(BUILT_IN));
     refuse_input(&path, &[Path::new(&args.prior), reversal_file])?;
@@ -139,7 +139,7 @@ fn fit_law(args: &FitArgs) -> Result<Outcome, CliError> {
         } else {
             print(&format!("{}\nlaw in {}\n", summary_of_interpolation(&law), path.display()))?;
         }
-        return Ok(Outcome::Done);
+        return Ok(Exit::Done);
     }
     let law = fit(&args.dir, &Prior::from_option(&args.prior)?)?;
     law.write(&path)?;
@@ -148,7 +148,7 @@ fn fit_law(args: &FitArgs) -> Result<Outcome, CliError> {
     } else {
         print(&format!("{}\nlaw in {}\n", summary(&law, args.verbose), path.display()))?;
     }
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }
 
 /// What `law fit --interpolate` prints.
@@ -225,7 +225,7 @@ fn summary(law: &Law, verbose: bool) -> String {
     text
 }
 
-fn predict_case(args: &PredictArgs) -> Result<Outcome, CliError> {
+fn predict_case(args: &PredictArgs) -> Result<Exit, CliError> {
     let (case, name) = match args.contact.case(&args.set)? {
         Some(case) => (case, "the contact".to_owned()),
         None => {
@@ -240,7 +240,7 @@ fn predict_case(args: &PredictArgs) -> Result<Outcome, CliError> {
     warn_out_of_range(Path::new(&name), &out_of_range);
     if args.json {
         print_json(&as_json(&points, &out_of_range))?;
-        return Ok(Outcome::Done);
+        return Ok(Exit::Done);
     }
     let mut text = String::from("segment,h,delta_T,F_N,F_T\n");
     for point in &points {
@@ -248,7 +248,7 @@ fn predict_case(args: &PredictArgs) -> Result<Outcome, CliError> {
         let _ = writeln!(text, "{},{}", point.segment, numbers.join(","));
     }
     print(&text)?;
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }
 
 fn as_json(points: &[PathPoint], out_of_range: &[OutOfRange]) -> Value {

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use clap::Args;
 
 use super::options::{DeviceArgs, Verbosity};
-use super::{CliError, Outcome, print};
+use super::{CliError, Exit, print};
 use crate::case::{Case, Friction, Material};
 use crate::law::check::{
     AIMS, Checked, MOST_MESH_ERROR, Path, Ranges, check, materials, opponent_of, protocol, random_paths, table, turning_paths,
@@ -70,7 +70,7 @@ const GOALS: [f64; 2] = [0.9, 0.75];
 const MOST_LEFT_OUT: f64 = 0.1;
 
 /// Simulates, compares and prints.
-pub(super) fn check_law(args: &CheckArgs) -> Result<Outcome, CliError> {
+pub(super) fn check_law(args: &CheckArgs) -> Result<Exit, CliError> {
     args.verbosity.start_log();
     args.device.start_threads()?;
     let case = args.case.as_ref().map(|path| Case::load(path, &args.set)).transpose()?;
@@ -132,9 +132,9 @@ pub(super) fn check_law(args: &CheckArgs) -> Result<Outcome, CliError> {
             "error: {failed} of {} paths were not simulated to their end, as the table says",
             all.len()
         );
-        return Ok(Outcome::NotConverged);
+        return Ok(Exit::NotConverged);
     }
-    Ok(if met { Outcome::Done } else { Outcome::GoalMissed })
+    Ok(if met { Exit::Done } else { Exit::GoalMissed })
 }
 
 /// A material in the words of a case file: `ideal, yield_stress 0.002, E 1, nu 0.3`.

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::law::warn_out_of_range;
-use super::{CliError, Outcome, print};
+use super::{CliError, Exit, print};
 use crate::case::Case;
 use crate::law::interpolated::Interpolated;
 use crate::law::table::{Tabulated, compose};
@@ -75,7 +75,7 @@ impl Given {
 }
 
 /// Makes the table and prints it.
-pub(super) fn compose_tables(args: &ComposeArgs) -> Result<Outcome, CliError> {
+pub(super) fn compose_tables(args: &ComposeArgs) -> Result<Exit, CliError> {
     let case = Case::load(&args.case, &args.set)?;
     let law = Given::read(args)?;
     let file = args.out.join("law.json");
@@ -114,5 +114,5 @@ pub(super) fn compose_tables(args: &ComposeArgs) -> Result<Outcome, CliError> {
         );
     }
     print(&format!("{text}\nlaw in {}\n", file.display()))?;
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }

@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 
 use super::input::Input;
 use super::law::warn_out_of_range;
-use super::{CliError, Outcome, print};
+use super::{CliError, Exit, print};
 use crate::law::export::{Engine, ExportedFile, Language, Start, beyond_the_law, law_files, law_source, start_files};
 use crate::law::{LawError, LawFile};
 use crate::output::{refuse_foreign, write_own};
@@ -77,7 +77,7 @@ impl ValueEnum for Engine {
 }
 
 /// Writes or prints the law.
-pub(super) fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
+pub(super) fn export_law(args: &ExportArgs) -> Result<Exit, CliError> {
     let law = LawFile::read_or_built_in(&args.law)?;
     match (args.engine, args.format) {
         (Some(engine), _) => export_start(args, &law, engine),
@@ -87,7 +87,7 @@ pub(super) fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
 }
 
 /// Writes what an engine starts from.
-fn export_start(args: &ExportArgs, law: &LawFile, engine: Engine) -> Result<Outcome, CliError> {
+fn export_start(args: &ExportArgs, law: &LawFile, engine: Engine) -> Result<Exit, CliError> {
     let mut cases = Vec::new();
     for file in args.case.iter().chain(&args.with) {
         let input = Input::read(file)?;
@@ -110,7 +110,7 @@ fn export_start(args: &ExportArgs, law: &LawFile, engine: Engine) -> Result<Outc
         ),
         Engine::C => format!("To run it: cd {dir} && cc -std=c99 -O2 main.c -o main -lm && ./main\n"),
     })?;
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }
 
 /// An error about the first case, if there is one.
@@ -135,7 +135,7 @@ fn write_files(dir: &Path, files: Vec<ExportedFile>) -> Result<(), CliError> {
 }
 
 /// Writes or prints a law by itself.
-fn export_one(args: &ExportArgs, law: &LawFile, language: Language) -> Result<Outcome, CliError> {
+fn export_one(args: &ExportArgs, law: &LawFile, language: Language) -> Result<Exit, CliError> {
     let input = args.case.as_deref().map(Input::read).transpose()?;
     let case = input.as_ref().map(|input| input.case(&args.set)).transpose()?;
     // What messages call the case: that of standard input has no path.
@@ -148,7 +148,7 @@ fn export_one(args: &ExportArgs, law: &LawFile, language: Language) -> Result<Ou
     }
     let Some(dir) = &args.out else {
         print(&law_source(law, language, case.as_ref()).map_err(in_case)?)?;
-        return Ok(Outcome::Done);
+        return Ok(Exit::Done);
     };
     write_files(dir, law_files(law, language, case.as_ref()).map_err(in_case)?)?;
     let dir = dir.display();
@@ -165,7 +165,7 @@ fn export_one(args: &ExportArgs, law: &LawFile, language: Language) -> Result<Ou
         }
     };
     print(&format!("To use it: {using}\nTo check it here: cd {dir} && {checking}\n"))?;
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }
 
 /// What a file of an export is for.

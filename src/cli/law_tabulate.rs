@@ -9,7 +9,7 @@ use clap::Args;
 
 use super::options::{DeviceArgs, Verbosity, out_or_name};
 use super::study::{compute, options};
-use super::{CliError, Outcome, print};
+use super::{CliError, Exit, print};
 use crate::case::{Case, PictureFormat};
 use crate::law::LawError;
 use crate::law::plots::table_picture;
@@ -51,7 +51,7 @@ pub struct TabulateArgs {
 }
 
 /// Simulates the depths, makes the table of them, and says how good it is.
-pub(super) fn tabulate(args: &TabulateArgs) -> Result<Outcome, CliError> {
+pub(super) fn tabulate(args: &TabulateArgs) -> Result<Exit, CliError> {
     args.verbosity.start_log();
     args.device.start_threads()?;
     let case = Case::load(&args.case, &args.set)?;
@@ -75,7 +75,7 @@ pub(super) fn tabulate(args: &TabulateArgs) -> Result<Outcome, CliError> {
             report.pending,
             out.display()
         );
-        return Ok(Outcome::Interrupted);
+        return Ok(Exit::Interrupted);
     }
     // Nobody begins another study there before its table is written.
     let _study = hold(&out, &study)?;
@@ -85,7 +85,7 @@ pub(super) fn tabulate(args: &TabulateArgs) -> Result<Outcome, CliError> {
     let drawn = out.join("tabulated.svg");
     table_picture(&built)?.write(&drawn, PictureFormat::Svg)?;
     print(&format!("{}\nlaw in {}, picture in {}\n", summary(&built), law.display(), drawn.display()))?;
-    Ok(if built.missing.is_empty() { Outcome::Done } else { Outcome::CasesFailed })
+    Ok(if built.missing.is_empty() { Exit::Done } else { Exit::CasesFailed })
 }
 
 /// What the command prints.

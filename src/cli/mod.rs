@@ -105,7 +105,7 @@ enum Command {
 }
 
 impl Command {
-    fn run(&self) -> Result<Outcome, CliError> {
+    fn run(&self) -> Result<Exit, CliError> {
         match self {
             Command::Run(args) => run::run(args),
             Command::Check(args) => check::check(args),
@@ -138,7 +138,7 @@ impl Cli {
 
 /// How a subcommand that had good input ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum Exit {
     /// All was done: exit code 0.
     Done,
     /// A step did not converge or the contact outgrew the mesh, what was computed is kept: exit
@@ -154,13 +154,13 @@ pub enum Outcome {
     Interrupted,
 }
 
-impl Outcome {
+impl Exit {
     fn exit_code(self) -> u8 {
         match self {
-            Outcome::Done => 0,
-            Outcome::GoalMissed => 1,
-            Outcome::NotConverged | Outcome::ChecksFailed | Outcome::CasesFailed => error::NOT_CONVERGED,
-            Outcome::Interrupted => 75,
+            Exit::Done => 0,
+            Exit::GoalMissed => 1,
+            Exit::NotConverged | Exit::ChecksFailed | Exit::CasesFailed => error::NOT_CONVERGED,
+            Exit::Interrupted => 75,
         }
     }
 }
@@ -201,7 +201,7 @@ fn called() -> u8 {
     signals::begin();
     let checked = crate::processor::check().map_err(CliError::from).and_then(|()| environment::check());
     let outcome = checked.and_then(|()| match Cli::from_command_line() {
-        Ok(cli) => cli.command.run().map(Outcome::exit_code),
+        Ok(cli) => cli.command.run().map(Exit::exit_code),
         Err(usage) => {
             // Help and version come this way too, with exit code 0.
             let _ = match environment::shortened(&usage.to_string()) {

@@ -8,7 +8,7 @@ use std::str::FromStr;
 use clap::Args;
 
 use super::options::{Format, Units};
-use super::{CliError, Outcome, print};
+use super::{CliError, Exit, print};
 use crate::case::{PictureFormat, PictureWidth};
 use crate::law::plots::beside_run;
 use crate::law::{LawError, LawFile};
@@ -46,7 +46,7 @@ pub struct PlotArgs {
 }
 
 /// Finds out what the directory is and draws it.
-pub fn plot(args: &PlotArgs) -> Result<Outcome, CliError> {
+pub fn plot(args: &PlotArgs) -> Result<Exit, CliError> {
     let dir = args.dir.as_path();
     let nothing = |what: String| CliError::NothingToPlot { dir: dir.to_owned(), what };
     match fs::metadata(dir) {
@@ -73,7 +73,7 @@ pub fn plot(args: &PlotArgs) -> Result<Outcome, CliError> {
     )))
 }
 
-fn plot_study(study: &StudyDirectory, args: &PlotArgs) -> Result<Outcome, CliError> {
+fn plot_study(study: &StudyDirectory, args: &PlotArgs) -> Result<Exit, CliError> {
     let own = study.root().join("law.json");
     let path = args.law.clone().or_else(|| own.exists().then_some(own));
     let law = path.as_deref().map(LawFile::read).transpose()?;
@@ -88,7 +88,7 @@ fn plot_study(study: &StudyDirectory, args: &PlotArgs) -> Result<Outcome, CliErr
     tell(&written)
 }
 
-fn plot_run(run: &OutputDirectory, args: &PlotArgs) -> Result<Outcome, CliError> {
+fn plot_run(run: &OutputDirectory, args: &PlotArgs) -> Result<Exit, CliError> {
     run.refuse_links()?;
     let case = run.load_case()?;
     let law = args.law.as_deref().map(LawFile::read_or_built_in).transpose()?;
@@ -118,8 +118,8 @@ fn plot_run(run: &OutputDirectory, args: &PlotArgs) -> Result<Outcome, CliError>
 }
 
 /// Prints the paths, a line each.
-fn tell(written: &[PathBuf]) -> Result<Outcome, CliError> {
+fn tell(written: &[PathBuf]) -> Result<Exit, CliError> {
     let lines: Vec<String> = written.iter().map(|path| format!("{}\n", path.display())).collect();
     print(&lines.concat())?;
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }

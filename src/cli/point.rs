@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::{CliError, Outcome};
+use super::{CliError, Exit};
 use crate::bounded;
 use crate::case::{self, short};
 use crate::material::MaterialError;
@@ -60,8 +60,8 @@ pub struct PointArgs {
 }
 
 /// Reads the material, drives the point, and prints a row a step, the undeformed point first. A
-/// step without an answer ends it with [`Outcome::NotConverged`], after the rows before it.
-pub fn point(args: &PointArgs) -> Result<Outcome, CliError> {
+/// step without an answer ends it with [`Exit::NotConverged`], after the rows before it.
+pub fn point(args: &PointArgs) -> Result<Exit, CliError> {
     let constants = case::Material::load(&args.material, &args.set)?;
     let material = constants.constants::<f64>().map_err(|source| CliError::Hardening { file: args.material.clone(), source })?;
     let (strain, steps) = (args.strain.unwrap_or(STRAIN), args.steps.unwrap_or(STEPS) as usize);
@@ -145,16 +145,16 @@ fn named(row: &csv::StringRecord) -> Result<[usize; 9], String> {
 }
 
 /// Prints the records, stresses and energies times `unit`.
-fn print(records: impl Iterator<Item = Result<PointRecord, MaterialError>>, unit: f64) -> Result<Outcome, CliError> {
+fn print(records: impl Iterator<Item = Result<PointRecord, MaterialError>>, unit: f64) -> Result<Exit, CliError> {
     let mut out = BufWriter::new(io::stdout().lock());
     match write(&mut out, records, unit) {
-        Ok(None) => Ok(Outcome::Done),
+        Ok(None) => Ok(Exit::Done),
         Ok(Some(error)) => {
             let _ = writeln!(io::stderr(), "error: {error}");
-            Ok(Outcome::NotConverged)
+            Ok(Exit::NotConverged)
         }
         // The reader has seen enough.
-        Err(source) if source.kind() == io::ErrorKind::BrokenPipe => Ok(Outcome::Done),
+        Err(source) if source.kind() == io::ErrorKind::BrokenPipe => Ok(Exit::Done),
         Err(source) => Err(CliError::Stdout { source }),
     }
 }

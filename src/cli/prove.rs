@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::options::Verbosity;
-use super::{CliError, Outcome};
+use super::{CliError, Exit};
 use crate::bench::BenchError;
 use crate::compute::gpu::{DeviceRequest, GpuError};
 use crate::output::{refuse_foreign, write_own};
@@ -73,7 +73,7 @@ pub struct ProveArgs {
 }
 
 /// Compares, measures, writes both files and says how it went.
-pub fn prove(args: &ProveArgs) -> Result<Outcome, CliError> {
+pub fn prove(args: &ProveArgs) -> Result<Exit, CliError> {
     args.verbosity.start_log();
     let request = match args.device {
         Proved::Auto => DeviceRequest::Auto,
@@ -108,5 +108,5 @@ pub fn prove(args: &ProveArgs) -> Result<Outcome, CliError> {
     if !args.verbosity.quiet {
         super::print(&format!("{}report in {} and {}\n", prove::verdict(&report), args.out.display(), markdown.display()))?;
     }
-    Ok(if report.agrees() { Outcome::Done } else { Outcome::ChecksFailed })
+    Ok(if report.agrees() { Exit::Done } else { Exit::ChecksFailed })
 }

@@ -10,7 +10,7 @@ use super::backend::{device_choice, precision_choice};
 use super::input::Input;
 use super::options::{DeviceArgs, Verbosity, out_or_name};
 use super::signals::stop_flag;
-use super::{CliError, Outcome};
+use super::{CliError, Exit};
 use crate::output::{LoggedProgress, OutputDirectory, RESULT_MARKER, Status, progress, refuse_input};
 use crate::quoting;
 use crate::session::{Canceller, Earlier, Options, SessionError, Simulation};
@@ -55,7 +55,7 @@ pub struct RunArgs {
 
 /// Loads and checks the case, prepares the directory or goes on with what is in it, simulates, and
 /// reports.
-pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
+pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
     args.verbosity.start_log();
     args.device.start_threads()?;
     let input = Input::read(&args.case)?;
@@ -107,12 +107,12 @@ fn command_line() -> String {
 }
 
 /// Says how it went, and gives the exit code.
-fn report(outcome: &crate::session::Outcome, steps: usize, out: &Path, verbosity: &Verbosity) -> Result<Outcome, CliError> {
+fn report(outcome: &crate::session::Outcome, steps: usize, out: &Path, verbosity: &Verbosity) -> Result<Exit, CliError> {
     let (summary, dir, quiet) = (&outcome.summary, out.display(), verbosity.quiet);
     let code = match outcome.status {
-        Status::Done => Outcome::Done,
-        Status::Interrupted => Outcome::Interrupted,
-        Status::NotConverged | Status::ContactOutgrewMesh | Status::Failed => Outcome::NotConverged,
+        Status::Done => Exit::Done,
+        Status::Interrupted => Exit::Interrupted,
+        Status::NotConverged | Status::ContactOutgrewMesh | Status::Failed => Exit::NotConverged,
     };
     let error = if outcome.ended_before {
         if outcome.is_done() && !quiet {

@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
-use super::{CliError, Outcome, print_json};
+use super::{CliError, Exit, print_json};
 use crate::case::{case_schema, study_schema};
 
 /// A kind of file.
@@ -26,10 +26,10 @@ pub struct SchemaArgs {
 }
 
 /// Prints the schema.
-pub fn schema(args: &SchemaArgs) -> Result<Outcome, CliError> {
+pub fn schema(args: &SchemaArgs) -> Result<Exit, CliError> {
     print_json(&match args.kind {
         FileKind::Case => case_schema(),
         FileKind::Study => study_schema(),
     })?;
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }

@@ -9,7 +9,7 @@ use clap_complete::Shell;
 
 use crate::output::refuse_foreign;
 
-use super::{CliError, Outcome, command, print};
+use super::{CliError, Exit, command, print};
 
 /// Print completions for a shell.
 ///
@@ -30,15 +30,15 @@ pub struct ManArgs {
 }
 
 /// Prints the completions.
-pub fn completions(args: &CompletionsArgs) -> Result<Outcome, CliError> {
+pub fn completions(args: &CompletionsArgs) -> Result<Exit, CliError> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut command(), "asperity", &mut script);
     print(&String::from_utf8_lossy(&script))?;
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }
 
 /// Writes the pages and says where.
-pub fn man(args: &ManArgs) -> Result<Outcome, CliError> {
+pub fn man(args: &ManArgs) -> Result<Exit, CliError> {
     let failed = |what| move |source| CliError::Out { dir: args.dir.clone(), what, source };
     fs::create_dir_all(&args.dir).map_err(failed("be created"))?;
     for entry in fs::read_dir(&args.dir).map_err(failed("be read"))?.flatten() {
@@ -49,5 +49,5 @@ pub fn man(args: &ManArgs) -> Result<Outcome, CliError> {
     }
     clap_mangen::generate_to(command(), &args.dir).map_err(failed("be written"))?;
     print(&format!("man pages in {0}; `man -l {0}/asperity.1` shows the first\n", args.dir.display()))?;
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }

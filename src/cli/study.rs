@@ -12,7 +12,7 @@ use super::backend::{device_choice, precision_choice};
 use super::input::Input;
 use super::options::{DeviceArgs, Precision, Verbosity, out_or_name};
 use super::signals::stop_flag;
-use super::{CliError, Outcome, cluster};
+use super::{CliError, Exit, cluster};
 use crate::compute::ComputeError;
 use crate::study::{self, Options, Report, Shard, Study, StudyError, StudyProgress};
 
@@ -66,7 +66,7 @@ pub struct StudyArgs {
 }
 
 /// Reads and checks the study, computes what there is to compute, and reports.
-pub fn study(args: &StudyArgs) -> Result<Outcome, CliError> {
+pub fn study(args: &StudyArgs) -> Result<Exit, CliError> {
     args.verbosity.start_log();
     // Clap lets no study pass without its file, and nothing be merged without --out.
     let file = args.study.as_deref().unwrap_or(Path::new(""));
@@ -127,7 +127,7 @@ pub(super) fn compute(study: &Study, out: &Path, options: &Options, quiet: bool)
 }
 
 /// Says how it went and gives the exit code.
-fn conclude(report: &Report, interrupted: bool, out: &Path, quiet: bool) -> Result<Outcome, CliError> {
+fn conclude(report: &Report, interrupted: bool, out: &Path, quiet: bool) -> Result<Exit, CliError> {
     let (dir, Report { done, failed, pending, .. }) = (out.display(), report);
     if !quiet {
         let elsewhere = match report.pending_elsewhere {
@@ -144,7 +144,7 @@ fn conclude(report: &Report, interrupted: bool, out: &Path, quiet: bool) -> Resu
             std::io::stderr(),
             "error: {why} with {pending} cases to go. What was computed is kept in {dir}; to go on, run the same command with --resume"
         );
-        return Ok(Outcome::Interrupted);
+        return Ok(Exit::Interrupted);
     }
     if let Some((id, reason)) = &report.first_failure {
         let _ = writeln!(
@@ -152,7 +152,7 @@ fn conclude(report: &Report, interrupted: bool, out: &Path, quiet: bool) -> Resu
             "error: {failed} of {} cases failed, the first in {dir}/cases/{id}: {reason}. all rows are kept in {dir}/study.csv",
             done + failed
         );
-        return Ok(Outcome::CasesFailed);
+        return Ok(Exit::CasesFailed);
     }
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }

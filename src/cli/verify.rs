@@ -8,10 +8,10 @@ use clap::builder::PossibleValuesParser;
 
 use super::backend::choose_backend;
 use super::options::{DeviceArgs, Verbosity};
-use super::{CliError, Outcome};
+use super::{CliError, Exit};
 use crate::compute::ComputeError;
 use crate::output::write_own;
-use crate::verify::{Check, FAMILIES, Level, Report, Runner, Verdict, VerifyError, names, table};
+use crate::verify::{Check, FAMILIES, Fineness, Report, Runner, Verdict, VerifyError, names, table};
 
 /// Compare this build with closed-form solutions.
 ///
@@ -41,7 +41,7 @@ pub struct VerifyArgs {
 }
 
 /// Runs the checks, a family at a time, and prints the table.
-pub fn verify(args: &VerifyArgs) -> Result<Outcome, CliError> {
+pub fn verify(args: &VerifyArgs) -> Result<Exit, CliError> {
     args.verbosity.start_log();
     args.device.start_threads()?;
     let all = args.only.is_empty();
@@ -57,7 +57,7 @@ pub fn verify(args: &VerifyArgs) -> Result<Outcome, CliError> {
         }
         Ok(selected.backend)
     };
-    let mut runner = Runner::new(&mut make, if args.fine { Level::Fine } else { Level::Quick });
+    let mut runner = Runner::new(&mut make, if args.fine { Fineness::Fine } else { Fineness::Quick });
     let mut report = Report::default();
     for family in FAMILIES.iter().filter(|family| all || args.only.iter().any(|only| family.has(only))) {
         let mut rows = family.run(&mut runner).map_err(|error| match error {
@@ -88,7 +88,7 @@ pub fn verify(args: &VerifyArgs) -> Result<Outcome, CliError> {
     if let Some(path) = &args.out {
         write_own(path, |file| file.write_all(report.to_json().as_bytes()))?;
     }
-    Ok(if report.passed() { Outcome::Done } else { Outcome::ChecksFailed })
+    Ok(if report.passed() { Exit::Done } else { Exit::ChecksFailed })
 }
 
 /// A line on stderr; a closed one is no reason to stop computing.

@@ -10,7 +10,7 @@ use super::cpu::Cpu;
 use super::handle::{CaseHandle, at};
 use super::{CaseModel, Compute, ComputeError, Energies, Fault, Outcome};
 use crate::contact::coulomb::{Friction, Point, Rows, contact_rows};
-use crate::material::hardening::Hardening;
+use crate::material::hardening::FlowStress;
 use crate::material::{Elasticity, Material};
 use crate::mesh::pattern::Pattern;
 use crate::mesh::{Mesh, brick};
@@ -38,14 +38,14 @@ fn models() -> Vec<CaseModel> {
     vec![
         CaseModel {
             mesh: mesh(1.0),
-            material: material(Hardening::ideal(2e-3).unwrap()),
+            material: material(FlowStress::ideal(2e-3).unwrap()),
             friction: Friction::Coulomb(0.3),
             opponent: None,
         },
-        CaseModel { mesh: mesh(1.1), material: material(Hardening::Elastic), friction: Friction::Coulomb(0.0), opponent: None },
+        CaseModel { mesh: mesh(1.1), material: material(FlowStress::Elastic), friction: Friction::Coulomb(0.0), opponent: None },
         CaseModel {
             mesh: mesh(0.9),
-            material: material(Hardening::power(1e-3, 5e-3, 0.3).unwrap()),
+            material: material(FlowStress::power(1e-3, 5e-3, 0.3).unwrap()),
             friction: Friction::Stick,
             opponent: None,
         },

@@ -10,7 +10,9 @@ use crate::real::Real;
 pub struct Bounds;
 
 impl Bounds {
+    /// For a backend in f64.
     pub const F64: Self = Self;
+    /// For one in f32.
     pub const F32: Self = Self;
 }
 

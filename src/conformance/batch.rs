@@ -5,7 +5,7 @@ use crate::compute::gpu::{DeviceReal, Gpu, GpuContext};
 use crate::compute::handle::at_contact;
 use crate::compute::{Answer, Blocks, Call, CaseModel, Compute, Energies, Outcome};
 use crate::contact::coulomb::{Friction, Rows};
-use crate::material::{Elasticity, Hardening, Material};
+use crate::material::{Elasticity, FlowStress, Material};
 use crate::mesh::brick::brick;
 use crate::mesh::couple::{couple, scaled};
 use crate::mesh::{Mesh, SphereSpec, flat_mesh, whole};
@@ -95,13 +95,13 @@ pub fn models(cells: [usize; 3]) -> Vec<CaseModel> {
 /// One law of every kind (E = 1), on meshes of one connectivity; the first and third share theirs.
 pub fn models_on(meshes: [Arc<Mesh>; 2]) -> Vec<CaseModel> {
     let laws = [
-        Ok(Hardening::Elastic),
-        Hardening::ideal(2e-3),
-        Hardening::linear(2e-3, 0.05),
-        Hardening::power(2e-3, 0.01, 0.3),
-        Hardening::hollomon(0.01, 5.0, 1.0),
-        Hardening::voce(2e-3, 6e-3, 20.0),
-        Hardening::table(&[[0.0, 2e-3], [0.01, 3e-3], [0.03, 3.5e-3], [0.2, 5e-3]]),
+        Ok(FlowStress::Elastic),
+        FlowStress::ideal(2e-3),
+        FlowStress::linear(2e-3, 0.05),
+        FlowStress::power(2e-3, 0.01, 0.3),
+        FlowStress::hollomon(0.01, 5.0, 1.0),
+        FlowStress::voce(2e-3, 6e-3, 20.0),
+        FlowStress::table(&[[0.0, 2e-3], [0.01, 3e-3], [0.03, 3.5e-3], [0.2, 5e-3]]),
     ];
     let frictions = [Friction::Coulomb(0.3), Friction::Stick, Friction::Coulomb(0.0), Friction::Coulomb(0.6)];
     let model = |(i, law): (usize, Result<_, _>)| CaseModel {
@@ -140,12 +140,14 @@ fn call(backend: &mut dyn Compute, displacements: &Displacements, call: fn(Arc<[
     backend.call(displacements.iter().map(|(case, u)| (*case, call(u.as_slice().into()))).collect()).unwrap()
 }
 
+/// Internal forces at displacements, one answer a case.
 pub fn forces(backend: &mut dyn Compute, displacements: &Displacements) -> Vec<(Outcome, Vec<f64>)> {
     let answers = call(backend, displacements, |displacement| Call::Force { displacement });
     let force = |answer| if let Answer::Force { force, outcome } = answer { (outcome, force) } else { panic!("{answer:?}") };
     answers.into_iter().map(force).collect()
 }
 
+/// Their tangents, in f64.
 pub fn tangents(backend: &mut dyn Compute, displacements: &Displacements) -> Vec<(Outcome, Vec<[f64; 9]>)> {
     let answers = call(backend, displacements, |displacement| Call::Tangent { displacement, blocks: Blocks::Double(Vec::new()) });
     let tangent = |answer| match answer {
@@ -155,6 +157,7 @@ pub fn tangents(backend: &mut dyn Compute, displacements: &Displacements) -> Vec
     answers.into_iter().map(tangent).collect()
 }
 
+/// Commits them; energies of the cases.
 pub fn commits(backend: &mut dyn Compute, displacements: &Displacements) -> Vec<(Outcome, Energies)> {
     let answers = call(backend, displacements, |displacement| Call::Commit { displacement });
     let commit = |answer| match answer {

@@ -10,7 +10,9 @@ use crate::real::Real;
 pub struct Bounds(f64);
 
 impl Bounds {
+    /// For a backend in f64.
     pub const F64: Self = Self(1e-13);
+    /// For one in f32.
     pub const F32: Self = Self(1e-5);
 }
 
@@ -41,6 +43,7 @@ fn trials<R: Real>(mesh: &crate::mesh::Mesh, committed: &[f64], seed: u64) -> (V
     (u, force)
 }
 
+/// Rows of contact points are those of the reference, on every mesh.
 pub fn rows_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
     every_mesh(CELLS).iter().for_each(|models| rows_agree_on::<R, B>(backend, bounds, models));
 }

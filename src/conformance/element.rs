@@ -20,7 +20,9 @@ pub struct Bounds {
 }
 
 impl Bounds {
+    /// For a backend in f64.
     pub const F64: Self = Self { force: 1e-12, tangent: 1e-12, state: 1e-12, differences: Some(1e-6) };
+    /// For one in f32.
     pub const F32: Self = Self { force: 2e-5, tangent: 1e-4, state: 2e-5, differences: None };
 }
 
@@ -70,6 +72,7 @@ fn prepare<R: Real, B: Backend<R>>(backend: &B, models: &[CaseModel], kind: (&st
     Pair { ours, reference, trials }
 }
 
+/// Element forces and tangents are those of the reference, on every mesh.
 pub fn forces_and_tangents_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
     every_mesh(CELLS).iter().for_each(|models| forces_and_tangents_agree_on::<R, B>(backend, bounds, models));
 }
@@ -99,6 +102,7 @@ fn distance(ours: &CaseState, reference: &CaseState) -> f64 {
     difference(&flat(ours), &flat(reference)).max(difference(&ours.plastic_work, &reference.plastic_work))
 }
 
+/// What a step commits and its energies are those of the reference, on every mesh.
 pub fn commits_and_energies_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
     every_mesh(CELLS).iter().for_each(|models| commits_and_energies_agree_on::<R, B>(backend, bounds, models));
 }

@@ -11,13 +11,14 @@ use crate::compute::linear::Ended;
 use crate::compute::{Answer, Call, CaseModel, Compute, Fault, Outcome};
 use crate::contact::coulomb::{Friction, Status};
 use crate::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
-use crate::material::{Elasticity, Hardening, Material};
+use crate::material::{Elasticity, FlowStress, Material};
 use crate::mesh::Mesh;
+use crate::solver::contact_rows::apply_contact;
 use crate::solver::iterate::SetOut;
 use crate::solver::newton::Newton;
 use crate::solver::phases::PhaseTimes;
 use crate::solver::pose::Pose;
-use crate::solver::system::{Boundary, Trial, apply_contact, fixed_unknowns, plate_functional, right_hand_side};
+use crate::solver::system::{Boundary, Trial, fixed_unknowns, plate_functional, right_hand_side};
 use crate::solver::{Control, Settings, StepOutcome};
 use std::sync::Arc;
 
@@ -28,9 +29,9 @@ pub const DEPTH: f64 = 0.004;
 /// friction.
 fn models(mesh: &Arc<Mesh>) -> Vec<CaseModel> {
     let cases = [
-        (Hardening::Elastic, Friction::Coulomb(0.3)),
-        (Hardening::ideal(2e-3).unwrap(), Friction::Stick),
-        (Hardening::ideal(4e-3).unwrap(), Friction::Coulomb(0.0)),
+        (FlowStress::Elastic, Friction::Coulomb(0.3)),
+        (FlowStress::ideal(2e-3).unwrap(), Friction::Stick),
+        (FlowStress::ideal(4e-3).unwrap(), Friction::Coulomb(0.0)),
     ];
     let model = |(hardening, friction)| CaseModel {
         mesh: mesh.clone(),

@@ -9,9 +9,10 @@ use crate::compute::linear::{self, Ended, Side, SideReport, Solved};
 use crate::compute::{Answer, Call, CaseModel, Compute, Outcome};
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, Status, contact_rows};
 use crate::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
-use crate::material::{Elasticity, Hardening, Material};
+use crate::material::{Elasticity, FlowStress, Material};
 use crate::mesh::{Mesh, SphereSpec, sphere_mesh, whole};
-use crate::solver::system::{Boundary, apply_contact, fixed_unknowns, plate_functional};
+use crate::solver::contact_rows::apply_contact;
+use crate::solver::system::{Boundary, fixed_unknowns, plate_functional};
 use std::sync::Arc;
 
 /// Cases of a batch.
@@ -41,8 +42,8 @@ pub fn whole_mesh() -> Arc<Mesh> {
 
 /// Three spheres: elastic, plastic, nearly incompressible.
 pub fn models(mesh: &Arc<Mesh>) -> Vec<CaseModel> {
-    let cases = [(Hardening::Elastic, 0.3), (Hardening::ideal(2e-3).unwrap(), 0.3), (Hardening::Elastic, 0.49)];
-    let model = |(hardening, nu): (Hardening<f64>, f64)| CaseModel {
+    let cases = [(FlowStress::Elastic, 0.3), (FlowStress::ideal(2e-3).unwrap(), 0.3), (FlowStress::Elastic, 0.49)];
+    let model = |(hardening, nu): (FlowStress<f64>, f64)| CaseModel {
         mesh: mesh.clone(),
         material: Material { elasticity: Elasticity::new(1.0, nu), hardening },
         friction: Friction::Coulomb(0.3),

@@ -3,7 +3,7 @@
 use crate::compute::gpu::layout::{ANSWER, RELATIVE, STATE, TANGENT};
 use crate::compute::gpu::material::{Answers, PointStatus, return_mapping};
 use crate::compute::gpu::{DeviceReal, GpuContext};
-use crate::material::{self, Elasticity, Hardening, Material, PointError, PointState, j2};
+use crate::material::{self, Elasticity, FlowStress, Material, PointError, PointState, j2};
 use crate::random::Seeded;
 use crate::real::Real;
 use std::sync::Arc;
@@ -28,7 +28,9 @@ pub struct Bounds {
 }
 
 impl Bounds {
+    /// For a backend in f64.
     pub const F64: Self = Self { agreement: 1e-13, equations: 1e-13 };
+    /// For one in f32.
     pub const F32: Self = Self { agreement: 1e-5, equations: 1e-5 };
 }
 
@@ -95,20 +97,20 @@ fn gather<R: Real, const N: usize>(data: &[R], case: usize, point: usize, points
 /// hard extremes.
 fn materials<R: Real>() -> Vec<Material<R>> {
     let laws = [
-        Ok(Hardening::Elastic),
-        Hardening::ideal(2e-3),
-        Hardening::linear(2e-3, 0.05),
-        Hardening::linear(2e-3, 0.0),
-        Hardening::power(2e-3, 0.01, 0.3),
-        Hardening::power(2e-3, 0.01, 1.0),
-        Hardening::power(2e-3, 0.05, 0.05),
-        Hardening::power(2e-3, 0.0, 0.5),
-        Hardening::hollomon(0.01, 5.0, 1.0),
-        Hardening::hollomon(0.02, 1.6, 1.0),
-        Hardening::voce(2e-3, 6e-3, 20.0),
-        Hardening::voce(2e-3, 2e-3, 5.0),
-        Hardening::table(&[[0.0, 2e-3], [0.01, 3e-3], [0.03, 3.5e-3], [0.2, 5e-3]]),
-        Hardening::table(&[[0.0, 1e-3]]),
+        Ok(FlowStress::Elastic),
+        FlowStress::ideal(2e-3),
+        FlowStress::linear(2e-3, 0.05),
+        FlowStress::linear(2e-3, 0.0),
+        FlowStress::power(2e-3, 0.01, 0.3),
+        FlowStress::power(2e-3, 0.01, 1.0),
+        FlowStress::power(2e-3, 0.05, 0.05),
+        FlowStress::power(2e-3, 0.0, 0.5),
+        FlowStress::hollomon(0.01, 5.0, 1.0),
+        FlowStress::hollomon(0.02, 1.6, 1.0),
+        FlowStress::voce(2e-3, 6e-3, 20.0),
+        FlowStress::voce(2e-3, 2e-3, 5.0),
+        FlowStress::table(&[[0.0, 2e-3], [0.01, 3e-3], [0.03, 3.5e-3], [0.2, 5e-3]]),
+        FlowStress::table(&[[0.0, 1e-3]]),
     ];
     let ratio = |i: usize| [0.3, 0.0, 0.45, 0.49][i % 4];
     let elastic = laws.into_iter().enumerate();
@@ -256,7 +258,7 @@ pub fn obeys_its_equations<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds)
             // does not have
             let underflows = a[12] < 4.0 * R::MIN_POSITIVE.to_f64();
             match status {
-                PointStatus::Yielding if underflows => assert!(matches!(material.hardening, Hardening::Power { .. }), "{place}"),
+                PointStatus::Yielding if underflows => assert!(matches!(material.hardening, FlowStress::Power { .. }), "{place}"),
                 PointStatus::Yielding => {
                     assert!(overstress.abs() < bounds.equations, "{place}: overstress {overstress:e}");
                     assert!(a[12] > before[6] && a[24] > 0.0 && a[25] > 0.0, "{place}: {a:?}");
@@ -358,7 +360,7 @@ pub fn follows_a_cycle<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
             assert!(error <= 40.0 * bounds.agreement, "{:?}: {error:e}", material.hardening);
         }
         assert!(
-            matches!(material.hardening, Hardening::Elastic) || reference[6] > 0.1,
+            matches!(material.hardening, FlowStress::Elastic) || reference[6] > 0.1,
             "{:?}: {reference:?}",
             material.hardening
         );

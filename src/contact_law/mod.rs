@@ -35,6 +35,7 @@ mod constants;
 mod parameters;
 mod prepare;
 mod sliders;
+mod state;
 mod step;
 mod table;
 mod update;
@@ -44,8 +45,8 @@ pub use centres::{Centres, Frame};
 pub use constants::Constants;
 pub use parameters::ContactParameters;
 pub(crate) use prepare::KEPT;
+pub use state::{ContactResponse, ContactState};
 pub use table::SLIDERS;
-pub use update::{ContactResponse, ContactState};
 pub use virgin::{ContactError, FirstLoading, Given, POINTS, Shapes, Virgin, VirginPoint, measured_slope, unloading_exponent};
 
 #[cfg(test)]

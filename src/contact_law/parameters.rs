@@ -2,7 +2,9 @@
 
 use super::constants::Constants;
 use super::prepare::prepare;
+use super::state::{ContactResponse, ContactState};
 use super::table::{LN_FORCE, LN_RADIUS, LN_STIFFNESS, Table};
+use super::update::{stored_energy, update};
 use super::virgin::{FirstLoading, Virgin};
 
 /// What the update needs to know of a pair of materials, shared by all contacts of the pair; any
@@ -81,5 +83,19 @@ impl ContactParameters {
         let first_loading = Box::new(self.first_loading.scaled(radius, youngs_modulus));
         let scale = [self.scale[0] * radius, self.scale[1] * youngs_modulus];
         Self { first_loading, scale, table, ..self }
+    }
+
+    /// Moves a contact to the indentation `h` and along the plane by `increment` (two components in
+    /// the tangent frame). A pure function of the state before. Where `h` or the increment is not
+    /// finite, or the state is not [sound](ContactState::is_sound), nothing in the answer is a
+    /// number and the state stays as it was.
+    pub fn update(&self, state: &ContactState, h: f64, increment: [f64; 2]) -> (ContactState, ContactResponse) {
+        update(&self.table, state, h, increment)
+    }
+
+    /// Elastic energy that the contact stores, force times length: no path gives back more than it.
+    /// No number where the state is not [sound](ContactState::is_sound).
+    pub fn stored_energy(&self, state: &ContactState) -> f64 {
+        stored_energy(&self.table, state)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::ContactParameters;
 use super::centres::Centres;
-use super::update::{ContactResponse, ContactState};
+use super::state::{ContactResponse, ContactState};
 use crate::case::{Hold, Segment, ShearTarget};
 
 /// A place on a path, in the units of the parameters.

@@ -4,8 +4,8 @@
 //! = r F_N are to be met. [`Step::evaluate`] tells by how much they are not, with slopes.
 
 use super::sliders::{Held, Limits, slide};
+use super::state::ContactState;
 use super::table::{FLOW, GAMMA, LN_FORCE, LN_STIFFNESS, MOBILISED, Row, SLIDERS, SOLVED, Table};
-use super::update::ContactState;
 
 /// Unknowns and given ones, in the order of slopes: y, r (two), h, delta_T (two).
 pub(super) const SLOPES: usize = 6;

@@ -1,7 +1,7 @@
 use super::table::WEIGHTS;
 use super::*;
 use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
-use crate::analytical::olsson_larsson::{Hardening, OlssonLarsson};
+use crate::analytical::olsson_larsson::{OlssonLarsson, OlssonLarssonHardening};
 use crate::analytical::{ElasticSphere, hertz};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -25,7 +25,7 @@ fn shapes([n, m, big_n]: [f64; 3], kept: f64, peak: f64) -> Shapes {
 /// A made-up law with the features of a fitted one: elastic below Lambda = 4, and from there on
 /// gradually another.
 fn law(yield_stress: f64, peak: f64, h: f64) -> Given {
-    let model = OlssonLarsson { sphere: SPHERE, hardening: Hardening::Ideal { yield_stress } };
+    let model = OlssonLarsson { sphere: SPHERE, hardening: OlssonLarssonHardening::Ideal { yield_stress } };
     let a = model.contact_radius(h);
     let f_n0 = model.force(h);
     let k_t = 8.0 * SPHERE.shear_modulus() * a / (2.0 - SPHERE.poissons_ratio);
@@ -442,7 +442,7 @@ const PRESSED_ON: &[[f64; 4]] = &[
 #[test]
 fn cycles_of_the_simulation_are_followed() {
     let sphere = ElasticSphere { radius: 1.0, youngs_modulus: 200e3, poissons_ratio: 0.3 };
-    let model = OlssonLarsson { sphere, hardening: Hardening::Ideal { yield_stress: 400.0 } };
+    let model = OlssonLarsson { sphere, hardening: OlssonLarssonHardening::Ideal { yield_stress: 400.0 } };
     // The virgin curve of this one contact, by hand; all else is the model's.
     let law = |h: f64| {
         let (a, f_n0) = (model.contact_radius(h), 0.975 * model.force(h));

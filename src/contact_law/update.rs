@@ -1,8 +1,8 @@
 //! One increment of one contact. The C header has the functions of `table`, `sliders`, `step` and
 //! this file, in that order, and does the same operations.
 
-use super::ContactParameters;
 use super::sliders::energy;
+use super::state::{ContactResponse, ContactState, MOST};
 use super::step::{Guess, LESS, Step, Terms};
 use super::table::{
     COLUMNS, FIRST_N, GAMMA, LN_FORCE, LN_RADIUS, LN_STIFFNESS, RADIAL_SLIP, Row, SLIDERS, SOFTENING, SUDDEN, Table, UNSHEARED_N,
@@ -24,107 +24,8 @@ const TOLERANCE: f64 = 1e-12;
 const ENOUGH: f64 = 1e-7;
 /// Share of mu below which the vertex hardly tells whether slip is against it.
 const HARDLY: f64 = 0.02;
-/// Greatest increment: the square of its force is still finite.
-const MOST: f64 = 1e140;
 /// An overlap below this is none: the powers of a smaller one are no numbers any more.
 const LEAST: f64 = 1e-30;
-
-/// The memory of one contact; all zero before first contact. Plain data: copy it, write it to a
-/// file as it is.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct ContactState {
-    /// Indentation h, length; negative is a gap.
-    pub h: f64,
-    /// Greatest h so far, length.
-    pub h_max: f64,
-    /// Elastic approach, length: h less the dent; negative is the gap over it.
-    pub approach: f64,
-    /// Hardening: the depth of first loading that has the contact's yield force, less that of the
-    /// table's first row; length.
-    pub hardened: f64,
-    /// Elastic approach at which the sliders are whole, length.
-    pub reach: f64,
-    /// Share of the yield force that releases took.
-    pub softened: f64,
-    /// Greatest share of F_N released since the contact last yielded.
-    pub released: f64,
-    /// How far it was sheared, 0 to 1, and its slip reversed, to 2.
-    pub worn: f64,
-    /// By what share the contact is wider than its F_N, as shear took F_N and left its radius.
-    pub stiffened: f64,
-    /// The vertex alpha of the yield surface, over F_N.
-    pub vertex: [f64; 2],
-    /// Forces of the sliders along the two axes and radial, innermost (last to slip) first.
-    pub slider: [[f64; SLIDERS]; 3],
-}
-
-/// The answer of an increment.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct ContactResponse {
-    /// Normal force, compression positive.
-    pub f_n: f64,
-    /// Tangential force along the displacement: what drives the sphere; the plane gives the sphere
-    /// the opposite.
-    pub f_t: [f64; 2],
-    /// d f_t\[i\]/d delta_T\[j\].
-    pub df_t_ddelta: [[f64; 2]; 2],
-    /// d f_n/dh at constant delta_T.
-    pub df_n_dh: f64,
-    /// d f_n/d delta_T at constant h.
-    pub df_n_ddelta: [f64; 2],
-    /// Radius of the contact, length.
-    pub a: f64,
-    /// d f_t/dh at constant delta_T.
-    pub df_t_dh: [f64; 2],
-}
-
-impl ContactState {
-    /// How many numbers it is.
-    pub const NUMBERS: usize = 11 + 3 * SLIDERS;
-
-    /// Its numbers as they lie in memory.
-    pub fn to_numbers(self) -> [f64; Self::NUMBERS] {
-        bytemuck::cast(self)
-    }
-
-    /// The state of such numbers.
-    pub fn from_numbers(numbers: [f64; Self::NUMBERS]) -> Self {
-        bytemuck::cast(numbers)
-    }
-
-    /// Whether it is a state that an update may have left: all its numbers finite, and each within
-    /// its bounds.
-    pub fn is_sound(&self) -> bool {
-        let positive = |value: f64| value.is_finite() && value >= 0.0;
-        let within = |value: f64, most: f64| (0.0..=most).contains(&value);
-        let all = |values: &[f64]| values.iter().all(|value| value.is_finite() && value.abs() <= MOST);
-        all(&[self.h, self.approach])
-            && all(&self.vertex)
-            && all(self.slider.as_flattened())
-            && all(&[self.h_max, self.hardened, self.reach, self.stiffened])
-            && positive(self.h_max)
-            && positive(self.hardened)
-            && positive(self.reach)
-            && self.stiffened > -1.0
-            && within(self.softened, 1.0)
-            && within(self.released, 1.0)
-            && within(self.worn, 2.0)
-    }
-
-    /// Turns the memory into axes that are turned by the angle whose cosine and sine are given: the
-    /// new components of a vector v are (c v0 + s v1, -s v0 + c v1). Call it when the tangent frame
-    /// follows the contact's normal.
-    pub fn rotate(&mut self, cosine: f64, sine: f64) {
-        let turned = |x: f64, y: f64| [cosine * x + sine * y, -sine * x + cosine * y];
-        self.vertex = turned(self.vertex[0], self.vertex[1]);
-        let [along, across, _] = &mut self.slider;
-        for (x, y) in along.iter_mut().zip(across) {
-            [*x, *y] = turned(*x, *y);
-        }
-    }
-}
 
 /// F_N at an elastic approach of a contact that is wider than its F_N by `stiffened`.
 fn elastic_force(row: &Row, e: f64, stiffened: f64) -> f64 {
@@ -132,44 +33,39 @@ fn elastic_force(row: &Row, e: f64, stiffened: f64) -> f64 {
     row.value[LN_FORCE] * (gamma * (e / row.approach).ln() + (gamma - 1.0) * stiffened.ln_1p()).exp()
 }
 
-impl ContactParameters {
-    /// Moves a contact to the indentation `h` and along the plane by `increment` (two components in
-    /// the tangent frame). A pure function of the state before. Where `h` or the increment is not
-    /// finite, or the state is not [sound](ContactState::is_sound), nothing in the answer is a
-    /// number and the state stays as it was.
-    pub fn update(&self, state: &ContactState, h: f64, increment: [f64; 2]) -> (ContactState, ContactResponse) {
-        if !(h.abs() <= MOST && increment[0].is_finite() && increment[1].is_finite() && state.is_sound()) {
-            let nan = f64::NAN;
-            let out = ContactResponse {
-                f_n: nan,
-                f_t: [nan; 2],
-                df_t_ddelta: [[nan; 2]; 2],
-                df_n_dh: nan,
-                df_n_ddelta: [nan; 2],
-                a: nan,
-                df_t_dh: [nan; 2],
-            };
-            return (*state, out);
-        }
-        let h = if h.abs() < LEAST { 0.0 } else { h };
-        let size = increment[0].abs().max(increment[1].abs());
-        moved(&self.table, state, h, if size > MOST { increment.map(|d| d / size * MOST) } else { increment })
+/// Moves a contact: see [`ContactParameters::update`](super::ContactParameters::update).
+pub(super) fn update(table: &Table, state: &ContactState, h: f64, increment: [f64; 2]) -> (ContactState, ContactResponse) {
+    if !(h.abs() <= MOST && increment[0].is_finite() && increment[1].is_finite() && state.is_sound()) {
+        let nan = f64::NAN;
+        let out = ContactResponse {
+            f_n: nan,
+            f_t: [nan; 2],
+            df_t_ddelta: [[nan; 2]; 2],
+            df_n_dh: nan,
+            df_n_ddelta: [nan; 2],
+            a: nan,
+            df_t_dh: [nan; 2],
+        };
+        return (*state, out);
     }
+    let h = if h.abs() < LEAST { 0.0 } else { h };
+    let size = increment[0].abs().max(increment[1].abs());
+    moved(table, state, h, if size > MOST { increment.map(|d| d / size * MOST) } else { increment })
+}
 
-    /// Elastic energy that the contact stores, force times length: no path gives back more than it.
-    /// No number where the state is not [sound](ContactState::is_sound).
-    pub fn stored_energy(&self, state: &ContactState) -> f64 {
-        if !state.is_sound() {
-            return f64::NAN;
-        }
-        let e = state.approach;
-        if !(e > 0.0) {
-            return 0.0;
-        }
-        let row = self.table.read(self.table.first + state.hardened, COLUMNS);
-        let f_n = elastic_force(&row, e, state.stiffened);
-        f_n * e / (row.value[GAMMA] + 1.0) + energy(&state.slider, row.value[LN_STIFFNESS])
+/// Elastic energy of a contact: see
+/// [`ContactParameters::stored_energy`](super::ContactParameters::stored_energy).
+pub(super) fn stored_energy(table: &Table, state: &ContactState) -> f64 {
+    if !state.is_sound() {
+        return f64::NAN;
     }
+    let e = state.approach;
+    if !(e > 0.0) {
+        return 0.0;
+    }
+    let row = table.read(table.first + state.hardened, COLUMNS);
+    let f_n = elastic_force(&row, e, state.stiffened);
+    f_n * e / (row.value[GAMMA] + 1.0) + energy(&state.slider, row.value[LN_STIFFNESS])
 }
 
 /// The contact moved to h and by d.

@@ -52,16 +52,16 @@ impl Status {
     fn words(self) -> &'static str {
         match self {
             Self::Done => "OK",
-            Self::Bad => "Bad Request",
+            Self::Bad => "Bad HttpRequest",
             Self::Forbidden => "Forbidden",
             Self::NotFound => "Not Found",
             Self::Method => "Method Not Allowed",
-            Self::Timeout => "Request Timeout",
+            Self::Timeout => "HttpRequest Timeout",
             Self::Conflict => "Conflict",
             Self::TooLarge => "Content Too Large",
             Self::QueryTooLong => "URI Too Long",
-            Self::Misdirected => "Misdirected Request",
-            Self::HeadTooLong => "Request Header Fields Too Large",
+            Self::Misdirected => "Misdirected HttpRequest",
+            Self::HeadTooLong => "HttpRequest Header Fields Too Large",
             Self::Broken => "Internal Server Error",
         }
     }

@@ -30,7 +30,7 @@ use self::answer::{Answer, Status};
 use self::charts::Overlay;
 use self::curves::{Curves, to_slip};
 use self::form::Form;
-use self::request::{Method, Request};
+use self::request::{HttpRequest, Method};
 use self::results::same_contact;
 use self::simulate::{Simulator, Stage};
 use crate::case::Case;
@@ -40,7 +40,7 @@ use crate::output::plots::plot_slip_frame;
 
 pub use results::{StudyCases, read_run};
 pub use serve::{End, Server, Service};
-pub use simulate::{Place, Run};
+pub use simulate::{Resources, Run};
 
 /// Contacts whose parameters are kept: a slider that goes back, and what follows one change of a
 /// page (curves, exports), find theirs.
@@ -57,7 +57,7 @@ pub struct Explorer {
     /// Results that were given with the case.
     earlier: Option<Run>,
     simulator: Simulator,
-    place: Place,
+    place: Resources,
     contacts: Mutex<Vec<(Case, Arc<ContactParameters>)>>,
     /// Where to say that a simulation was started.
     tell: fn(&str),
@@ -74,7 +74,7 @@ pub struct Beginning {
     /// A run that lies over the law.
     pub earlier: Option<Run>,
     /// Where simulations compute.
-    pub place: Place,
+    pub place: Resources,
     /// Told of what the user of the terminal should know.
     pub tell: fn(&str),
 }
@@ -224,7 +224,7 @@ fn not_found() -> Answer {
 }
 
 impl Service for Explorer {
-    fn answer(&self, request: &Request) -> Answer {
+    fn answer(&self, request: &HttpRequest) -> Answer {
         let form = match Form::with(&self.base, &request.query) {
             Ok(form) => form,
             Err(why) => return Answer::plain(Status::Bad, &format!("asperity explore: {why}.\n")),

@@ -37,7 +37,7 @@ pub enum Method {
 
 /// A request that may be answered.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Request {
+pub struct HttpRequest {
     /// How it is meant.
     pub method: Method,
     /// The path below the token, without a slash at the start: empty for the page itself.
@@ -72,7 +72,7 @@ impl Gate {
     }
 
     /// Reads a request from a connection and judges it; `None` where nobody asks anything.
-    pub fn receive(&self, stream: &mut TcpStream) -> Option<Result<Request, Answer>> {
+    pub fn receive(&self, stream: &mut TcpStream) -> Option<Result<HttpRequest, Answer>> {
         match read_head(stream) {
             Head::Nothing => None,
             Head::TooSlow => Some(Err(refused(Status::Timeout, "the request was not complete after 5 seconds"))),
@@ -85,7 +85,7 @@ impl Gate {
     ///
     /// # Errors
     /// The answer that says what is wrong.
-    pub fn judge(&self, head: &[u8]) -> Result<Request, Answer> {
+    pub fn judge(&self, head: &[u8]) -> Result<HttpRequest, Answer> {
         let mut headers = [httparse::EMPTY_HEADER; MOST_HEADERS];
         let mut parsed = httparse::Request::new(&mut headers);
         match parsed.parse(head) {
@@ -127,7 +127,7 @@ impl Gate {
     }
 
     /// Holds the path against the token.
-    fn place(&self, method: Method, target: &str, site: Option<&str>, mode: Option<&str>) -> Result<Request, Answer> {
+    fn place(&self, method: Method, target: &str, site: Option<&str>, mode: Option<&str>) -> Result<HttpRequest, Answer> {
         let (path, query) = target.split_once('?').unwrap_or((target, ""));
         if query.len() > LONGEST_QUERY || path.len() > LONGEST_QUERY {
             return Err(refused(Status::QueryTooLong, &longer("query", LONGEST_QUERY)));
@@ -141,7 +141,7 @@ impl Gate {
         if site == Some("cross-site") && mode != Some("navigate") {
             return Err(refused(Status::Forbidden, "the request comes from a page of another site"));
         }
-        Ok(Request { method, path: rest.to_owned(), query: query.to_owned() })
+        Ok(HttpRequest { method, path: rest.to_owned(), query: query.to_owned() })
     }
 }
 
@@ -196,12 +196,12 @@ mod tests {
 
     const TOKEN: &str = "0123456789abcdef0123456789abcdef";
 
-    fn judged(text: &str) -> Result<Request, u16> {
+    fn judged(text: &str) -> Result<HttpRequest, u16> {
         let head = text.replace('\n', "\r\n") + "\r\n\r\n";
         Gate::new(TOKEN.to_owned(), 8123).judge(head.as_bytes()).map_err(|answer| answer.status.code())
     }
 
-    fn get(path: &str, more: &str) -> Result<Request, u16> {
+    fn get(path: &str, more: &str) -> Result<HttpRequest, u16> {
         judged(&format!("GET {path} HTTP/1.1\nHost: 127.0.0.1:8123{more}"))
     }
 

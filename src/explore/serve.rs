@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::answer::{Answer, Status};
-use super::request::{Gate, Method, Request};
+use super::request::{Gate, HttpRequest, Method};
 
 /// Threads that answer. Browsers open connections beforehand and say nothing on them for a while;
 /// so there are more threads than cores.
@@ -22,7 +22,7 @@ const BEAT: Duration = Duration::from_millis(50);
 /// Answers requests that may be answered.
 pub trait Service: Send + Sync + 'static {
     /// The answer.
-    fn answer(&self, request: &Request) -> Answer;
+    fn answer(&self, request: &HttpRequest) -> Answer;
 }
 
 /// Why the server has ended.

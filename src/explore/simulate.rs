@@ -16,7 +16,7 @@ const MOST_FRAMES: usize = 80;
 
 /// Where simulations of the page compute.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct Resources {
     /// The device.
     pub device: DeviceChoice,
     /// Its precision.
@@ -90,7 +90,7 @@ impl Simulator {
     ///
     /// # Errors
     /// Why it was not started.
-    pub fn start(&self, case: Case, query: String, place: Place) -> Result<(), String> {
+    pub fn start(&self, case: Case, query: String, place: Resources) -> Result<(), String> {
         let mut thread = held(&self.thread);
         if thread.as_ref().is_some_and(|(thread, _)| !thread.is_finished()) {
             return Err("a simulation is running; cancel it first".to_owned());
@@ -152,7 +152,13 @@ fn change(run: &Mutex<Option<Run>>, how: impl FnOnce(&mut Run)) {
 }
 
 /// Follows the path and keeps what the page shows; how it ended, in a word and in words.
-fn follow(case: &Case, place: Place, canceller: Canceller, shared: &Arc<Mutex<Option<Run>>>, begun: Instant) -> (Stage, String) {
+fn follow(
+    case: &Case,
+    place: Resources,
+    canceller: Canceller,
+    shared: &Arc<Mutex<Option<Run>>>,
+    begun: Instant,
+) -> (Stage, String) {
     let failed = |error: &dyn std::fmt::Display| (Stage::Failed, error.to_string());
     let options = Options {
         device: place.device,

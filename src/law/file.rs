@@ -6,6 +6,7 @@ use std::path::Path;
 use super::formulas::predict::over_a_plane;
 use super::interpolated::{self, Interpolated};
 use super::json;
+pub use super::json::BUILT_IN;
 use super::range::OutOfRange;
 use super::table::{self, Tabulated};
 use super::variables::Body;
@@ -13,9 +14,6 @@ use super::{Law, LawError};
 use crate::case::{Case, Friction, Segment};
 use crate::contact_law::path::{PathPoint, follow_centres};
 use crate::contact_law::{Centres, ContactParameters};
-
-/// The name under which a law comes with the program.
-pub const BUILT_IN: &str = "built-in";
 
 /// What a `law.json` may be.
 #[derive(Clone, Debug, PartialEq)]

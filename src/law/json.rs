@@ -10,10 +10,12 @@ use serde::{Deserialize, Serialize};
 
 use super::LawError;
 use super::bounds::Checked;
-use super::file::BUILT_IN;
 use crate::bounded;
 use crate::case::{nearest, short};
 use crate::output::{plain_json, write_own};
+
+/// The name under which a law comes with the program.
+pub const BUILT_IN: &str = "built-in";
 
 /// A kind of law file.
 pub(super) trait LawKind: DeserializeOwned {

@@ -7,7 +7,7 @@
 use crate::analytical::olsson_larsson::plastic_share;
 use crate::analytical::{ElasticSphere, johnson, yielding};
 use crate::case::{self, Case};
-use crate::material::{Hardening, MaterialError};
+use crate::material::{FlowStress, MaterialError};
 
 /// What a sphere is made of: all that its axisymmetric contact depends on. Any one consistent
 /// system of units.
@@ -16,7 +16,7 @@ pub struct Body {
     /// R, E, nu.
     pub sphere: ElasticSphere,
     /// sigma(eps_p), in the unit of E.
-    pub hardening: Hardening<f64>,
+    pub hardening: FlowStress<f64>,
 }
 
 /// The normalised variables of one contact.
@@ -56,7 +56,7 @@ impl Body {
 
     /// Whether the sphere never yields.
     pub fn is_elastic(&self) -> bool {
-        matches!(self.hardening, Hardening::Elastic)
+        matches!(self.hardening, FlowStress::Elastic)
     }
 
     /// sigma_rep at the contact radius `a`: the flow stress at the total strain eps_rep = 0.2 a/R
@@ -152,13 +152,17 @@ mod tests {
     fn the_closed_forms_have_the_same_sigma_rep() {
         let sphere = ElasticSphere { radius: 2.0, youngs_modulus: E, poissons_ratio: 0.3 };
         let pairs = [
-            (laws()[0].clone(), olsson_larsson::Hardening::Ideal { yield_stress: 400.0 }),
+            (laws()[0].clone(), olsson_larsson::OlssonLarssonHardening::Ideal { yield_stress: 400.0 }),
             // sigma_Y (1 + k eps_p^(1/m)) and sigma_Y + K eps_p^n.
             (
                 laws()[2].clone(),
-                olsson_larsson::Hardening::ThreeParameter { yield_stress: 200.0, coefficient: 4.0, exponent: 1.0 / 0.3 },
+                olsson_larsson::OlssonLarssonHardening::ThreeParameter {
+                    yield_stress: 200.0,
+                    coefficient: 4.0,
+                    exponent: 1.0 / 0.3,
+                },
             ),
-            (laws()[3].clone(), olsson_larsson::Hardening::TwoParameter { coefficient: 1200.0, exponent: 4.0 }),
+            (laws()[3].clone(), olsson_larsson::OlssonLarssonHardening::TwoParameter { coefficient: 1200.0, exponent: 4.0 }),
         ];
         for (law, hardening) in pairs {
             let closed = olsson_larsson::OlssonLarsson { sphere, hardening };

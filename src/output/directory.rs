@@ -1,9 +1,10 @@
 //! Where each result of a run lies in its folder.
 
+use super::OutputError;
 use super::atomic::{draft_of, remove_if_there};
 use super::lock::{LOCK_NAME, is_left};
+use super::own::{RESULT_MARKER, refuse_foreign, write_own};
 use super::tables::RUN_PICTURES;
-use super::{OutputError, refuse_foreign, write_own};
 use crate::bounded;
 use crate::case::{Case, CaseError, PictureFormat};
 use std::fs;
@@ -11,10 +12,6 @@ use std::path::{Path, PathBuf};
 
 /// Names of the checkpoints: of where a run goes on, and of the end before an extension.
 const CHECKPOINTS: [&str; 2] = ["checkpoint.bin", "checkpoint-end.bin"];
-
-/// First line of a result's `case.toml`: by it, and only by it, a directory is recognised as a
-/// result that may be replaced.
-pub const RESULT_MARKER: &str = "# The resolved case of an asperity run. Running into this directory again replaces its results.";
 
 /// The folder of one run: the names in it, in one place.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! The discretisation errors of the numbers of a summary, as its rows and its companion tell them,
 //! and the ripple of the press curve.
 
+use super::first_shear::{SLIP_DISPLACEMENT_RATIOS, first_shear};
 use super::limit::{TANGENTIAL_SHARE, size};
-use super::summary::{SLIP_DISPLACEMENT_RATIOS, first_shear};
 use super::{Limits, StepLimits, StepRecord};
 
 /// Press steps from this share of the greatest indentation on show the ripple.

@@ -2,9 +2,12 @@
 
 use std::path::Path;
 
-use super::sound::MOST;
 use super::{ContactPoint, OutputError, StepRecord, Summary};
 use crate::compute::CaseFields;
+
+/// Most of anything that a run counts: far more than it can, and so little that sums of it are
+/// still numbers.
+pub(super) const MOST: u64 = 1_000_000_000_000;
 
 /// The numbers of a contact point that follow from the state, by their columns.
 fn numbers_of_point(point: &ContactPoint) -> [(&'static str, f64); 6] {

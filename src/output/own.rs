@@ -1,11 +1,14 @@
 //! Which files are the program's own, by what is in them: only those are replaced and removed. A
 //! name alone tells nothing, as a user may have a `run.log` or `plots/forces.svg` too.
 
-use super::directory::RESULT_MARKER;
 use super::{OutputError, write_atomically};
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
+
+/// First line of a result's `case.toml`: by it, and only by it, a directory is recognised as a
+/// result that may be replaced.
+pub const RESULT_MARKER: &str = "# The resolved case of an asperity run. Running into this directory again replaces its results.";
 
 /// Bytes of a file that are looked at, at its beginning and at its end.
 const LOOK: u64 = 65_536;

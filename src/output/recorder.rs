@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::{ContactPoint, StepRecord, Units};
 use crate::case::Case;
 use crate::simulation::drive::{Observer, StepView};
+use crate::simulation::error::ObserverError;
 use crate::simulation::problem::Problem;
 
 /// The history of a run, in the case's units, the undeformed state first, and the contact at its
@@ -29,17 +30,17 @@ impl Recorder {
 }
 
 impl Observer for Recorder {
-    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError> {
         self.rows.push(view.record.in_units(&self.units));
         Ok(())
     }
 
-    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError> {
         self.contact = ContactPoint::whole_of(view.points, &self.units);
         Ok(())
     }
 
-    fn starts_over(&mut self, problem: &Problem, _: usize) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    fn starts_over(&mut self, problem: &Problem, _: usize) -> Result<(), ObserverError> {
         self.spacing = Some(problem.spacing);
         self.rows.clear();
         Ok(())

@@ -20,6 +20,7 @@ use crate::case::{Case, Fields, PictureFormat};
 use crate::compute::{ComputeError, Description};
 use crate::simulation::checkpoint::Snapshot;
 use crate::simulation::drive::{Observer, StepView};
+use crate::simulation::error::ObserverError;
 use crate::simulation::problem::Problem;
 use crate::simulation::scout::Scout;
 
@@ -38,8 +39,6 @@ pub struct Setting {
 const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(5);
 /// Writing them takes no more than one part in so many of the run, however large they are.
 const CHECKPOINT_SHARE: u32 = 20;
-
-type Failed = Box<dyn std::error::Error + Send + Sync>;
 
 /// What is drawn at the end, and how.
 #[cfg(feature = "plots")]
@@ -363,7 +362,7 @@ impl ResultWriter {
     }
 
     /// Writes fields and contact table of a step, once.
-    fn save(&mut self, view: &mut StepView<'_>, contact: &[ContactPoint]) -> Result<(), Failed> {
+    fn save(&mut self, view: &mut StepView<'_>, contact: &[ContactPoint]) -> Result<(), ObserverError> {
         let step = view.record.0.step;
         if self.ledger.saved.last() == Some(&step) {
             return Ok(());
@@ -385,7 +384,7 @@ impl ResultWriter {
 
     /// Keeps the contact of a step of the shear for the plots, with its table, from which they can
     /// be drawn again.
-    fn save_panel(&mut self, view: &StepView<'_>) -> Result<(), Failed> {
+    fn save_panel(&mut self, view: &StepView<'_>) -> Result<(), ObserverError> {
         if !self.plots || !is_panel(&self.ledger.rows, self.friction) {
             return Ok(());
         }
@@ -400,7 +399,7 @@ impl ResultWriter {
 }
 
 impl Observer for ResultWriter {
-    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError> {
         if view.record.0.step == 0 {
             // The undeformed state is no step that was computed.
             return Ok(());
@@ -436,7 +435,7 @@ impl Observer for ResultWriter {
         Ok(())
     }
 
-    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError> {
         self.ledger.times += view.unfinished;
         if view.record.0.step == 0 {
             return Ok(());
@@ -460,7 +459,7 @@ impl Observer for ResultWriter {
         Ok(())
     }
 
-    fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), Failed> {
+    fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), ObserverError> {
         self.out.cut_back(&[], &[])?;
         self.history = HistoryWriter::create(&self.out.history())?;
         self.collection = Collection::new(&self.out.collection());

@@ -5,13 +5,9 @@
 use serde::Serialize;
 use serde_json::Value;
 
-use super::finite::{none_in_point, none_in_row};
+use super::finite::{MOST, none_in_point, none_in_row};
 use super::ledger::Ledger;
 use crate::simulation::zone::Zone;
-
-/// Most of anything that a run counts: far more than it can, and so little that sums of it are
-/// still numbers.
-pub(super) const MOST: u64 = 1_000_000_000_000;
 
 /// What no run can have written into its ledger.
 pub(super) fn flaw(ledger: &Ledger) -> Option<String> {

@@ -1,18 +1,15 @@
 //! `summary.json`: one run in some numbers, and how they are read off its history.
 
+use super::first_shear::{SLIP_DISPLACEMENT_RATIOS, first_shear};
+use super::units::coefficient;
 use super::{ErrorEstimate, OutputError, StepRecord, TimeByPhase, plain_json, write_atomically};
 use crate::bounded;
+use crate::case::{Case, Segment};
 use crate::compute::traffic::DeviceTraffic;
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::Path;
 
-/// delta_T_slip is the displacement at which |F_T|/F_N first reaches this share of mu: the last per
-/// cent of the curve is so flat that where it ends depends on mesh and steps.
-pub const SLIP_DISPLACEMENT_RATIO: f64 = 0.99;
-/// The same for delta_T_90 and delta_T_95, which have limits, and for delta_T_slip, which is a
-/// convention.
-pub(super) const SLIP_DISPLACEMENT_RATIOS: [f64; 3] = [0.90, 0.95, SLIP_DISPLACEMENT_RATIO];
 /// Full slip counts as reached when no point in contact sticks or |F_T|/F_N is at least this share
 /// of mu. It stays below 1 where points slip in slightly different directions or a few at the edge,
 /// which carry next to nothing, do not settle.
@@ -59,6 +56,27 @@ pub struct SummaryInputs {
     pub friction: Option<f64>,
     /// Segments of the path in which h and delta_T move together: none of them is a shear.
     pub oblique: Vec<usize>,
+}
+
+impl SummaryInputs {
+    /// Those of a case in the user's units.
+    pub fn of(case: &Case) -> Self {
+        Self {
+            radius: case.sphere.radius,
+            youngs_modulus: case.material.youngs_modulus,
+            friction: coefficient(case.contact.friction),
+            oblique: (0..case.path.len()).filter(|&i| does_more_than_shear(&case.path[i])).collect(),
+        }
+    }
+}
+
+/// Whether a segment shears and does something else as well.
+fn does_more_than_shear(segment: &Segment) -> bool {
+    match segment {
+        Segment::Oblique { .. } => true,
+        Segment::Motion { to, .. } => to.turns() || to.indentation.is_some(),
+        Segment::Indentation { .. } | Segment::Shear { .. } | Segment::Slip { .. } | Segment::Release { .. } => false,
+    }
 }
 
 /// The forces over E R^2, the lengths over R, the stiffness over E R.
@@ -300,22 +318,6 @@ impl Summary {
             problem: flaw.to_string(),
         })
     }
-}
-
-/// The last record before the first shear and the records of that shear, up to where it stops or
-/// turns. Without a shear the record of the greatest indentation and nothing.
-pub(super) fn first_shear<'a>(history: &'a [StepRecord], oblique: &[usize]) -> (Option<&'a StepRecord>, &'a [StepRecord]) {
-    let way = |pair: &[StepRecord]| [pair[1].delta_t - pair[0].delta_t, pair[1].delta_t_y - pair[0].delta_t_y];
-    let sheared = |pair: &[StepRecord]| way(pair) != [0.0; 2] && !oblique.contains(&pair[1].segment);
-    let begin = history.windows(2).position(sheared);
-    let Some(begin) = begin else {
-        let deepest = history.iter().reduce(|deepest, record| if record.h >= deepest.h { record } else { deepest });
-        return (deepest, &[]);
-    };
-    let [x, y] = way(&history[begin..begin + 2]);
-    let on = |pair: &&[StepRecord]| sheared(pair) && x * way(pair)[0] + y * way(pair)[1] > 0.0;
-    let length = history[begin..].windows(2).take_while(on).count();
-    (Some(&history[begin]), &history[begin + 1..=begin + length])
 }
 
 /// A point of the shear as sizes.

@@ -2,11 +2,9 @@
 //! user's units and the whole sphere.
 
 use super::{ContactPoint, ContactStatus, Half, StepRecord};
-use crate::case::{self, Case, Scaled, Segment};
+use crate::case::{self, Case, Scaled};
 use crate::contact::coulomb::Status;
 use crate::simulation::record;
-
-use super::summary::SummaryInputs;
 
 /// The numbers by which everything is scaled.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,27 +124,6 @@ pub(super) fn coefficient(friction: case::Friction) -> Option<f64> {
     match friction {
         case::Friction::Coefficient(mu) => Some(mu),
         case::Friction::Stick => None,
-    }
-}
-
-/// Whether a segment shears and does something else as well.
-fn does_more_than_shear(segment: &Segment) -> bool {
-    match segment {
-        Segment::Oblique { .. } => true,
-        Segment::Motion { to, .. } => to.turns() || to.indentation.is_some(),
-        Segment::Indentation { .. } | Segment::Shear { .. } | Segment::Slip { .. } | Segment::Release { .. } => false,
-    }
-}
-
-impl SummaryInputs {
-    /// Those of a case in the user's units.
-    pub fn of(case: &Case) -> Self {
-        Self {
-            radius: case.sphere.radius,
-            youngs_modulus: case.material.youngs_modulus,
-            friction: coefficient(case.contact.friction),
-            oblique: (0..case.path.len()).filter(|&i| does_more_than_shear(&case.path[i])).collect(),
-        }
     }
 }
 

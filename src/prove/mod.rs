@@ -7,6 +7,7 @@
 
 pub mod kernels;
 pub mod latency;
+mod options;
 pub mod page;
 pub mod parity;
 pub mod progress;
@@ -28,38 +29,10 @@ use latency::Latency;
 use parity::Parity;
 use progress::ProveProgress;
 
+pub use options::{Options, Part};
+
 /// The first key of a report: what it is and its layout.
 pub const FORMAT: &str = "asperity-prove/1";
-
-/// A part of what is proved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// Each kernel against the CPU.
-    Kernels,
-    /// Nine whole cases against the CPU.
-    Cases,
-    /// Latency, copies, whole jobs.
-    Times,
-}
-
-/// What is proved, and how long it may take.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// The parts; all if there are none.
-    pub only: Vec<Part>,
-    /// Which device: a real one, or any.
-    pub request: DeviceRequest,
-    /// Threads of what is computed on the CPU.
-    pub threads: usize,
-    /// Two minutes on a software driver, in place of all there is.
-    pub quick: bool,
-}
-
-impl Options {
-    fn has(&self, part: Part) -> bool {
-        self.only.is_empty() || self.only.contains(&part)
-    }
-}
 
 /// Whole jobs on one mesh.
 #[derive(Clone, Debug, Serialize)]

@@ -141,12 +141,9 @@ struct Left {
     newton: usize,
 }
 
-/// Where something is computed.
-#[derive(Clone, Copy)]
-struct Place {
-    device: DeviceChoice,
-    precision: PrecisionChoice,
-    threads: usize,
+/// How the cases are computed.
+fn options(device: DeviceChoice, precision: PrecisionChoice, threads: usize) -> study::Options {
+    study::Options { device, precision, threads, shard: None, resume: false, retry: false, force: false }
 }
 
 /// The study, or one case of it, with a tolerance.
@@ -160,13 +157,11 @@ fn text_of(tolerance: f64, only: Option<usize>) -> String {
         .fold(base, |text, (_, part)| text + "[[list]]" + part)
 }
 
-fn computed(devices: &Devices, place: Place, tolerance: f64, only: Option<usize>) -> Result<Vec<Left>, StudyError> {
+fn computed(devices: &Devices, how: &study::Options, tolerance: f64, only: Option<usize>) -> Result<Vec<Left>, StudyError> {
     let study = Study::parse(&text_of(tolerance, only), "parity.toml")?;
     let dir = Scratch::new("parity");
-    let Place { device, precision, threads } = place;
-    let how = study::Options { device, precision, threads, shard: None, resume: false, retry: false, force: false };
     let watched = (Arc::new(StudyProgress::new(true)), Arc::new(AtomicBool::new(false)));
-    run_on(devices, &study, dir.path(), &how, watched)?;
+    run_on(devices, &study, dir.path(), how, watched)?;
     let left = |case: &study::StudyCase| -> Result<Left, StudyError> {
         let directory = StudyDirectory::new(dir.path()).case(&case.id);
         let path = directory.history();
@@ -189,17 +184,17 @@ pub fn compare(options: &Options, has_double: bool, progress: &mut ProveProgress
     for (number, bounds) in BOUNDS.iter().enumerate().take(if options.quick { 1 } else { 2 }) {
         progress.begins(&format!("nine cases on the CPU, tolerance {:e}", bounds.tolerance), 2.0);
         let on_cpu = Devices::open(DeviceChoice::Cpu).map_err(StudyError::from).and_then(|devices| {
-            let place = Place { device: DeviceChoice::Cpu, precision: PrecisionChoice::Auto, threads: options.threads };
-            computed(&devices, place, bounds.tolerance, None)
+            let how = self::options(DeviceChoice::Cpu, PrecisionChoice::Auto, options.threads);
+            computed(&devices, &how, bounds.tolerance, None)
         });
         for &(name, precision) in precisions {
             let bound = if name == "f64" { bounds.in_f64 } else { bounds.mixed };
             let mut row = Row { precision: name, tolerance: bounds.tolerance, bound, cases: Vec::new(), failed: None };
-            let place = Place { device: DeviceChoice::Gpu, precision, threads: options.threads };
+            let how = self::options(DeviceChoice::Gpu, precision, options.threads);
             let cases = match &on_cpu {
                 Ok(on_cpu) => {
                     let ran = &mut parity.kernels;
-                    against((on_cpu, ran), place, bounds.tolerance, (options.quick, number == 0), progress)
+                    against((on_cpu, ran), &how, bounds.tolerance, (options.quick, number == 0), progress)
                 }
                 Err(error) => Err(error.to_string()),
             };
@@ -218,14 +213,14 @@ pub fn compare(options: &Options, has_double: bool, progress: &mut ProveProgress
 /// The cases on the device beside those of the CPU; at the default tolerance also again and alone.
 fn against(
     (on_cpu, ran): (&[Left], &mut Vec<&'static str>),
-    place: Place,
+    how: &study::Options,
     tolerance: f64,
     (quick, again): (bool, bool),
     progress: &mut ProveProgress,
 ) -> Result<Vec<OfCase>, String> {
     // A profile tells which kernels ran.
-    let devices = Devices::profiled(place.device).map_err(|error| error.to_string())?;
-    let run = |only: Option<usize>| computed(&devices, place, tolerance, only).map_err(|error| error.to_string());
+    let devices = Devices::profiled(how.device).map_err(|error| error.to_string())?;
+    let run = |only: Option<usize>| computed(&devices, how, tolerance, only).map_err(|error| error.to_string());
     progress.begins(&format!("nine cases on the device, tolerance {tolerance:e}"), 6.0);
     let together = run(None)?;
     let mut cases = Vec::new();

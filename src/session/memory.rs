@@ -8,11 +8,10 @@ use crate::output::{
     SummaryInputs, TimeByPhase, Units, detail, last_line,
 };
 use crate::simulation::drive::{Observer, StepView};
+use crate::simulation::error::ObserverError;
 use crate::simulation::problem::Problem;
 use crate::simulation::scout::Scout;
 use crate::solver::phases::PhaseTimes;
-
-type Failed = Box<dyn std::error::Error + Send + Sync>;
 
 /// What the summary has to know beside the history.
 pub struct Memory {
@@ -109,7 +108,7 @@ impl Memory {
 }
 
 impl Observer for Memory {
-    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError> {
         if view.record.0.step == 0 {
             // The undeformed state is no step that was computed.
             return Ok(());
@@ -135,7 +134,7 @@ impl Observer for Memory {
         Ok(())
     }
 
-    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError> {
         self.times += view.unfinished;
         self.traffic.read(view.traffic());
         Ok(())
@@ -146,7 +145,7 @@ impl Observer for Memory {
         self.messages.push(format!("note: {text}"));
     }
 
-    fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), Failed> {
+    fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), ObserverError> {
         self.setting.elements = problem.model.mesh.elements.len();
         self.setting.unknowns = unknowns;
         self.spacing = problem.spacing;

@@ -2,8 +2,8 @@
 //! own may step, watch and cancel.
 //!
 //! `claim` takes the directory of results, `prepare` recognises and clears it, `prior` finds
-//! whether there is a run in it to go on with, `pacer` watches the steps, `memory` keeps what would
-//! be written where there is no directory. [`Simulation`] puts them together.
+//! whether there is a run in it to go on with, `pacer` watches the steps, `sink` is where results
+//! go: into the directory, or into `memory` where there is none. [`Simulation`] puts them together.
 
 mod claim;
 mod error;
@@ -13,6 +13,7 @@ mod plan;
 mod prepare;
 mod prior;
 mod simulation;
+mod sink;
 
 #[cfg(test)]
 mod tests;

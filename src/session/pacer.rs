@@ -7,9 +7,8 @@ use crate::compute::ComputeError;
 use crate::output::{StepRecord, Units};
 use crate::simulation::checkpoint::Snapshot;
 use crate::simulation::drive::{Observer, StepView};
+use crate::simulation::error::ObserverError;
 use crate::simulation::problem::Problem;
-
-type Failed = Box<dyn std::error::Error + Send + Sync>;
 
 /// How far a run is to go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,7 +51,7 @@ impl<'a> Pacer<'a> {
 }
 
 impl Observer for Pacer<'_> {
-    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError> {
         self.inner.step(view)?;
         if view.record.0.step > 0 {
             self.rows.push(view.record.in_units(&self.units));
@@ -61,7 +60,7 @@ impl Observer for Pacer<'_> {
         Ok(())
     }
 
-    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError> {
         if self.paused.get() { Ok(()) } else { self.inner.segment_end(view) }
     }
 
@@ -69,7 +68,7 @@ impl Observer for Pacer<'_> {
         self.inner.note(text);
     }
 
-    fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), Failed> {
+    fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), ObserverError> {
         self.rows.clear();
         self.accepted = 0;
         self.inner.starts_over(problem, unknowns)

@@ -10,6 +10,7 @@ use super::pacer::{Pace, Pacer};
 use super::plan::{forecast, plan};
 use super::prepare::prepare;
 use super::prior::{PriorRun, prior_run, refused};
+use super::sink::Sink;
 use super::{Canceller, Earlier, Options, Outcome, SessionError};
 use crate::case::{Case, check_room};
 use crate::compute::select::{Selected, select};
@@ -21,7 +22,7 @@ use crate::output::{
     Summary, Units, mises, read_history,
 };
 use crate::simulation::SimulationError;
-use crate::simulation::drive::{Ending, Observer};
+use crate::simulation::drive::Ending;
 use crate::simulation::follow::{Follower, Seat, seats};
 use crate::simulation::problem::Problem;
 use crate::simulation::scout::{Scout, first_zone, scout};
@@ -88,29 +89,6 @@ struct Running {
     follower: Follower<'static>,
     seats: Seats,
     sink: Sink,
-}
-
-/// Where results go.
-enum Sink {
-    Files(Box<ResultWriter>),
-    Memory(Box<Memory>),
-}
-
-impl Sink {
-    fn observer(&mut self) -> &mut dyn Observer {
-        match self {
-            Self::Files(results) => results.as_mut(),
-            Self::Memory(memory) => memory.as_mut(),
-        }
-    }
-
-    /// Keeps a note for the summary that the user has been told already.
-    fn remember(&mut self, note: &str) {
-        match self {
-            Self::Files(results) => results.remember(note),
-            Self::Memory(memory) => memory.remember(note),
-        }
-    }
 }
 
 /// What the last accepted step shows, of the meshed half, y >= 0, in the user's units.
@@ -387,14 +365,13 @@ impl Simulation {
     fn set_out(&mut self, ready: Ready) -> Result<Stage, SessionError> {
         let Ready { mut problem, mut seats, computed_on, selection, mut checkpoint, extends } = ready;
         let case = &self.case;
-        let canceller = self.options.canceller.clone();
         let mut progress = self.progress.take().unwrap_or_else(|| Box::new(SilentProgress));
         plan(case, &computed_on).iter().for_each(|line| progress.message(line));
         let begun = std::time::Instant::now();
         let scouts = (checkpoint.is_none() || extends.is_some()) && case.solver.error_estimate;
         let mut scout = if scouts {
             progress.message("coarse run first, for the reach of the contact and the error estimate");
-            scout(case, &canceller.flag).map_err(SessionError::Simulation)?
+            scout(case, &self.options.canceller.flag).map_err(SessionError::Simulation)?
         } else {
             None
         };
@@ -416,31 +393,11 @@ impl Simulation {
             progress.message(&forecast(scout, &problem, scout_took));
         }
         let setting = Setting { computed_on, elements: problem.model.mesh.elements.len(), unknowns: problem.free_unknowns() };
-        let mut sink = match &self.options.out {
-            Some(out) => {
-                let stop = canceller.flag.clone();
-                let found = checkpoint.as_deref();
-                let mut results = ResultWriter::create(case, out, setting, self.clock, progress, stop, found)?;
-                results.meshed(&problem);
-                results = results.keeping_checkpoint(case.output.keep_checkpoint);
-                if let Some(interval) = self.options.checkpoint_every {
-                    results = results.with_checkpoints_every(interval);
-                }
-                match &checkpoint {
-                    Some(checkpoint) => {
-                        let how = if extends.is_some() { "extended" } else { "resumed" };
-                        results.tell(&format!("{how} after step {} of the run in {}", checkpoint.step(), out.display()));
-                        self.history = read_history(&OutputDirectory::existing(out).history())?;
-                    }
-                    None if self.options.earlier == Earlier::Resume => {
-                        results.tell(&format!("nothing to resume in {}: from the beginning", out.display()));
-                    }
-                    None => {}
-                }
-                Sink::Files(Box::new(results))
-            }
-            None => Sink::Memory(Box::new(Memory::new(case, &problem, setting, self.clock, progress, canceller))),
-        };
+        let found = checkpoint.as_deref();
+        let mut sink = self.sink(&problem, setting, progress, found, extends.is_some())?;
+        if let (Some(out), Some(_)) = (&self.options.out, found) {
+            self.history = read_history(&OutputDirectory::existing(out).history())?;
+        }
         // A resumed run has noted them before.
         if checkpoint.is_none() {
             case.doubts().iter().for_each(|doubt| sink.remember(&doubt.to_string()));
@@ -456,10 +413,7 @@ impl Simulation {
                     problem.spacing
                 ));
             }
-            match &mut sink {
-                Sink::Files(results) => results.scouted(scout, scout_took),
-                Sink::Memory(memory) => memory.scouted(scout, scout_took),
-            }
+            sink.scouted(scout, scout_took);
         }
         if stopped {
             // Without a checkpoint: the run will begin with its coarse run again.
@@ -470,6 +424,39 @@ impl Simulation {
             Ok(follower) => Ok(Stage::Running(Box::new(Running { follower, seats, sink }))),
             Err(error) => Ok(Stage::Ended(Box::new(self.conclude(Err(error), sink)?), None)),
         }
+    }
+
+    /// Begins the results, or goes on with those that were `found`, of a path that may have been
+    /// `extended`.
+    fn sink(
+        &self,
+        problem: &Problem,
+        setting: Setting,
+        progress: Box<dyn Progress>,
+        found: Option<&Checkpoint>,
+        extended: bool,
+    ) -> Result<Sink, SessionError> {
+        let (case, canceller) = (&self.case, self.options.canceller.clone());
+        let Some(out) = &self.options.out else {
+            return Ok(Sink::Memory(Box::new(Memory::new(case, problem, setting, self.clock, progress, canceller))));
+        };
+        let mut results = ResultWriter::create(case, out, setting, self.clock, progress, canceller.flag, found)?;
+        results.meshed(problem);
+        results = results.keeping_checkpoint(case.output.keep_checkpoint);
+        if let Some(interval) = self.options.checkpoint_every {
+            results = results.with_checkpoints_every(interval);
+        }
+        match found {
+            Some(checkpoint) => {
+                let how = if extended { "extended" } else { "resumed" };
+                results.tell(&format!("{how} after step {} of the run in {}", checkpoint.step(), out.display()));
+            }
+            None if self.options.earlier == Earlier::Resume => {
+                results.tell(&format!("nothing to resume in {}: from the beginning", out.display()));
+            }
+            None => {}
+        }
+        Ok(Sink::Files(Box::new(results)))
     }
 
     /// The checkpoint of a run that is done as one of this case, whose path begins with that of

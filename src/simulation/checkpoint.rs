@@ -155,7 +155,7 @@ impl Committed {
 
 /// How far the path has been followed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Place {
+pub(super) struct PathPosition {
     /// The undeformed state has been shown.
     pub begun: bool,
     /// The segment that is followed; their number once all are behind.
@@ -186,7 +186,7 @@ pub(super) struct Place {
     pub relaxed_told: bool,
 }
 
-impl Place {
+impl PathPosition {
     /// Nothing of the segment has been done.
     pub fn is_at_segment_start(&self) -> bool {
         self.reached == 0 && !self.under_way
@@ -204,7 +204,7 @@ impl Place {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     pub(super) state: Committed,
-    pub(super) place: Place,
+    pub(super) place: PathPosition,
     /// Force scales of the last accepted step and of all (see
     /// [`crate::solver::newton::Newton::force_scales`]).
     pub(super) force_scales: [f64; 2],
@@ -256,7 +256,7 @@ impl Snapshot {
         if !start.chain(targets).chain(record).chain(single).chain(increment).all(|value| sound(&value)) {
             return wrong("a number of its place on the path");
         }
-        let Place { segment, reached, wasted, cutbacks, depth, pace, .. } = *place;
+        let PathPosition { segment, reached, wasted, cutbacks, depth, pace, .. } = *place;
         let counts = [segment, reached, wasted, cutbacks, depth, state.record.step, place.waiting.len()];
         let most = counts.into_iter().max().unwrap_or(0);
         if most > MOST_COUNTED || pace > MOST_PACE {

@@ -10,7 +10,7 @@ mod segments;
 use std::sync::Arc;
 
 use super::SimulationError;
-use super::checkpoint::{Committed, Place, Snapshot};
+use super::checkpoint::{Committed, PathPosition, Snapshot};
 pub use super::ending::{Ending, Outgrowth};
 use super::observer::Displacement;
 pub use super::observer::{Observer, StepView};
@@ -46,7 +46,7 @@ pub struct Drive<'a> {
     safe: Safe,
     /// What a step left whose iterates are on the device, until it is recorded.
     settled: Option<Settled>,
-    place: Place,
+    place: PathPosition,
     /// Normal force that the present segment holds, of the meshed half.
     held_force: Option<f64>,
     /// How Newton went in the last accepted step.
@@ -86,7 +86,7 @@ impl<'a> Drive<'a> {
             is_away: false,
             safe: Safe::default(),
             settled: None,
-            place: Place::default(),
+            place: PathPosition::default(),
             held_force: None,
             last_report: StepReport::default(),
             traffic_before: None,
@@ -179,7 +179,7 @@ impl<'a> Drive<'a> {
                 let virgin = CaseState::virgin(&self.mesh);
                 self.handle().restore(virgin)?;
                 self.newton.set_force_scales([0.0; 2]);
-                (self.state, self.place) = (Committed::virgin(&self.mesh, self.newton.opponent()), Place::default());
+                (self.state, self.place) = (Committed::virgin(&self.mesh, self.newton.opponent()), PathPosition::default());
                 self.is_away = false;
                 Ok(())
             }

@@ -1,6 +1,7 @@
 //! Who watches a run, and what is shown of a step.
 
 use super::checkpoint::Snapshot;
+use super::error::ObserverError;
 use super::problem::Problem;
 use super::record::{ContactPoint, StepRecord};
 use crate::case::Scaled;
@@ -17,15 +18,15 @@ use crate::solver::phases::PhaseTimes;
 /// Watches a run.
 pub trait Observer {
     /// A step was accepted. The undeformed state comes first, as step 0.
-    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError>;
     /// A segment of the path has ended, or the run ends within it; `view` shows its last accepted
     /// step.
-    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
+    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError>;
     /// Something that the user should know and the summary should keep.
     fn note(&mut self, text: &str);
     /// The contact left the finely meshed zone: the run starts over from the undeformed state on
     /// the mesh of `problem`, which has so many unknowns.
-    fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), ObserverError> {
         let _ = (problem, unknowns);
         Ok(())
     }

@@ -11,7 +11,7 @@ use crate::compute::CaseModel;
 use crate::contact::coulomb::Friction;
 use crate::contact::rigid::Rigid;
 use crate::linalg::SolverKind;
-use crate::material::{Hardening, Material, MaterialError};
+use crate::material::{FlowStress, Material, MaterialError};
 use crate::memory;
 use crate::mesh::couple::{self, couple};
 use crate::mesh::sphere::{SphereSpec, flat_mesh, opponent_mesh, sphere_mesh};
@@ -98,11 +98,11 @@ pub fn shear_steps(case: &Case) -> usize {
 }
 
 /// The fine zone that a scaled case asks for: its own contact radius, or else the predicted one.
-fn asked_zone(scaled: &Scaled<Case>, laws: &[&Hardening<f64>]) -> Zone {
+fn asked_zone(scaled: &Scaled<Case>, laws: &[&FlowStress<f64>]) -> Zone {
     let case = &scaled.0;
     let flow_stress = |alpha: f64| {
         laws.iter()
-            .filter(|law| !matches!(law, Hardening::Elastic))
+            .filter(|law| !matches!(law, FlowStress::Elastic))
             .map(|law| law.flow_stress(alpha))
             .fold(f64::INFINITY, f64::min)
     };
@@ -164,9 +164,9 @@ fn two_bodies(Scaled(case): &Scaled<Case>, slaves_are_exchanged: bool) -> Option
 /// Johnson's parameter of a contact of radius `a`, Lambda = E a/((1 - nu^2) sigma_rep R), with
 /// sigma_rep at the plastic strain 0.2 a/R (Tabor 1951); zero where there is no yield. With another
 /// body E* is that of both, and the weaker one yields.
-fn johnson_parameter(laws: &[&Hardening<f64>], compliance: f64, nu: f64, a: f64) -> f64 {
-    let of = |law: &&Hardening<f64>| match law {
-        Hardening::Elastic => 0.0,
+fn johnson_parameter(laws: &[&FlowStress<f64>], compliance: f64, nu: f64, a: f64) -> f64 {
+    let of = |law: &&FlowStress<f64>| match law {
+        FlowStress::Elastic => 0.0,
         law => a / (compliance * (1.0 - nu * nu) * law.flow_stress(0.2 * a)),
     };
     laws.iter().map(of).fold(0.0, f64::max)
@@ -194,7 +194,7 @@ impl Problem {
         let nu = case.material.poissons_ratio;
         let material = case.material.constants::<f64>()?;
         let opponent = opponent_material(&scaled)?;
-        let laws: Vec<&Hardening<f64>> = std::iter::once(&material).chain(&opponent).map(|m| &m.hardening).collect();
+        let laws: Vec<&FlowStress<f64>> = std::iter::once(&material).chain(&opponent).map(|m| &m.hardening).collect();
         let zone = zone.map_or_else(|| asked_zone(&scaled, &laws), |zone| zone.within(smaller_radius(&scaled)));
         let elements = case.mesh.surface_elements();
         let mesh = mesh_of(&scaled, &zone)?;
@@ -284,7 +284,7 @@ impl Problem {
     pub fn zone_of(case: &Case) -> Result<Zone, SimulationError> {
         let case = case.scaled();
         let (own, opponent) = (case.0.material.constants::<f64>()?, opponent_material(&case)?);
-        let laws: Vec<&Hardening<f64>> = std::iter::once(&own).chain(&opponent).map(|m| &m.hardening).collect();
+        let laws: Vec<&FlowStress<f64>> = std::iter::once(&own).chain(&opponent).map(|m| &m.hardening).collect();
         Ok(asked_zone(&case, &laws))
     }
 

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::SimulationError;
 use super::drive::{Ending, Observer, StepView};
+use super::error::ObserverError;
 use super::follow::{follow, on_cpu};
 use super::problem::{Problem, press_steps, shear_steps};
 use super::record::StepRecord;
@@ -124,17 +125,15 @@ impl Watch {
     }
 }
 
-type Failed = Box<dyn std::error::Error + Send + Sync>;
-
 impl Observer for Watch {
-    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError> {
         if view.record.0.step > 0 {
             self.rows.push(view.record);
         }
         Ok(())
     }
 
-    fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Failed> {
+    fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), ObserverError> {
         Ok(())
     }
 
@@ -142,7 +141,7 @@ impl Observer for Watch {
         log::info!("scout: {text}");
     }
 
-    fn starts_over(&mut self, problem: &Problem, _: usize) -> Result<(), Failed> {
+    fn starts_over(&mut self, problem: &Problem, _: usize) -> Result<(), ObserverError> {
         self.set_out(problem);
         Ok(())
     }

@@ -3,6 +3,7 @@
 use super::SimulationError;
 use super::checkpoint::Snapshot;
 use super::drive::{Drive, Ending, Observer, StepView};
+use super::error::ObserverError;
 use super::problem::Problem;
 use super::record::StepRecord;
 use crate::case::{Case, Hold, Opponent, Segment, ShearTarget};
@@ -41,11 +42,11 @@ struct Seen {
 }
 
 impl Observer for Seen {
-    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError> {
         self.rows.push(view.record.0);
         Ok(())
     }
-    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError> {
         self.ends.push(view.record.0.step);
         Ok(())
     }

@@ -12,7 +12,7 @@ use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::{missing_weight, prescribed};
 use crate::compute::{ComputeError, Fault, Outcome};
 use crate::contact::coulomb::{Friction, Point, Rows, Status, contact_rows};
-use crate::contact::frame::Frame;
+use crate::contact::frame::ContactFrame;
 use crate::linalg::bsr::BlockMatrix;
 use crate::mesh::Mesh;
 use crate::real::Real;
@@ -37,8 +37,9 @@ pub struct Boundary {
     pub weight: f64,
     /// What the body is pressed against.
     pub opponent: Box<dyn Opponent>,
-    /// Nodes and contact nodes of the sphere; those of another body follow them.
+    /// Nodes of the sphere; those of another body follow them.
     pub own_nodes: usize,
+    /// Its contact nodes, alike.
     pub own_contacts: usize,
 }
 
@@ -93,7 +94,7 @@ pub struct Trial {
     /// Where there is an interface: the force that it carries at each slave node, in its frame.
     pub interface_force: Vec<[f64; 3]>,
     /// Against a rigid sphere: the frame of its surface at each contact node.
-    pub frames: Vec<Frame>,
+    pub frames: Vec<ContactFrame>,
     /// Indentation (an unknown when the normal force is held).
     pub h: f64,
     /// Normal force by which merits are scaled: the sum of f_z over the closed points.
@@ -278,52 +279,6 @@ pub fn fixed_unknowns(mesh: &Mesh, boundary: &Boundary, rows: &[Rows<f64>], fixe
         for i in 0..3 {
             fixed[3 * n + i] |= rows.fixed[i];
         }
-    }
-}
-
-/// Replaces the contact nodes' rows by their contact conditions.
-///
-/// Rows of prescribed unknowns are left as they are: the linear solver takes `fixed` and never
-/// reads them.
-pub fn apply_contact<T: Real>(matrix: &mut BlockMatrix<T>, mesh: &Mesh, rows: &[Rows<f64>]) {
-    for (rows, &node) in rows.iter().zip(&mesh.contact_nodes) {
-        if rows.status == Status::Slip {
-            apply_rows(matrix, node as usize, rows);
-        }
-    }
-}
-
-/// Turns the rows and columns of contact nodes into their frames, if they have any.
-pub fn turn<T: Real>(matrix: &mut BlockMatrix<T>, mesh: &Mesh, frames: &[Frame]) {
-    for (q, &node) in frames.iter().zip(&mesh.contact_nodes) {
-        turn_node(matrix, node as usize, q);
-    }
-}
-
-/// Turns the row and the column of a node into a frame.
-pub(super) fn turn_node<T: Real>(matrix: &mut BlockMatrix<T>, node: usize, q: &Frame) {
-    for k in matrix.pattern.row(node) {
-        let column = matrix.pattern.column[k] as usize;
-        let a = matrix.blocks[k].map(T::to_f64);
-        matrix.blocks[k] = std::array::from_fn(|m| T::of((0..3).map(|i| q[m / 3][i] * a[3 * i + m % 3]).sum()));
-        // The pattern is symmetric.
-        if let Some(k) = matrix.pattern.position(column, node) {
-            let a = matrix.blocks[k].map(T::to_f64);
-            matrix.blocks[k] = std::array::from_fn(|m| T::of((0..3).map(|j| a[3 * (m / 3) + j] * q[m % 3][j]).sum()));
-        }
-    }
-}
-
-/// Replaces the rows of a node by the conditions of its contact.
-pub(super) fn apply_rows<T: Real>(matrix: &mut BlockMatrix<T>, node: usize, rows: &Rows<f64>) {
-    let diagonal = matrix.pattern.diagonal[node] as usize;
-    for k in matrix.pattern.row(node) {
-        let old = matrix.blocks[k].map(T::to_f64);
-        matrix.blocks[k] = std::array::from_fn(|m| {
-            let (i, j) = (m / 3, m % 3);
-            let sum: f64 = (0..3).map(|m| rows.force_rows[i][m] * old[3 * m + j]).sum();
-            T::of(if k == diagonal { sum + rows.displacement_rows[i][j] } else { sum })
-        });
     }
 }
 

@@ -13,9 +13,8 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 
 use super::StudyError;
-use super::batch::{Guest, Host, Place, share};
-use super::run::Finished;
-use super::schedule::side_by_side;
+use super::batch::{Guest, Host, Slot, share};
+use super::schedule::{Finished, side_by_side};
 use super::simulate::Simulator;
 use crate::compute::select::{Devices, PrecisionChoice, Selected};
 use crate::compute::{CaseModel, Compute, ComputeError};
@@ -106,7 +105,7 @@ impl Waiting {
 
 /// A place of a batch, and the case that it has from the beginning, up to when that is begun.
 struct Desk {
-    place: Place,
+    place: Slot,
     first: Mutex<Option<(usize, Problem)>>,
     /// What the user should know of how its device was chosen.
     notes: Vec<String>,

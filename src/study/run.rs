@@ -17,7 +17,7 @@ use super::place::{Placed, alone, computed, earlier_results, join};
 use super::progress::StudyProgress;
 use super::room::at_a_time;
 use super::row::{Row, RowStatus, write_table};
-use super::schedule::{in_order, pools, side_by_side};
+use super::schedule::{Finished, in_order, pools, side_by_side};
 use super::shard::{Shard, by_descending_cost, cost};
 use super::simulate::Simulator;
 use crate::case::{Case, Linear};
@@ -104,17 +104,6 @@ pub(crate) fn run_on(
     options: &Options,
     (progress, stop): (Arc<StudyProgress>, Arc<AtomicBool>),
 ) -> Result<Report, StudyError> {
-    let device = devices.is_there();
-    // Over a plane the device does nearly all of the work, and the threads of the cases wait for
-    // it; the linear systems of two bodies, and those that are to be solved directly, take the
-    // cores.
-    let there = |case: &Case| case.opponent.is_none() && case.solver.linear == Linear::Multigrid;
-    let alone = study.cases.iter().all(|case| there(&case.case));
-    let slots = match (device, alone) {
-        (true, true) => LARGEST_BATCH,
-        (true, false) => (2 * options.threads).clamp(1, LARGEST_BATCH),
-        (false, _) => options.threads.max(1),
-    };
     study.doubts().iter().for_each(|(id, doubt)| progress.message(id, &format!("note: {doubt}")));
     let directory = &StudyDirectory::new(dir);
     let costs: Vec<f64> = study.cases.iter().map(|case| cost(&case.case)).collect();
@@ -122,39 +111,11 @@ pub(crate) fn run_on(
     let done =
         |case: usize| options.resume && Row::read(&study.cases[case].case, &directory.case(&study.cases[case].id)).is_done();
     study.check_room(|case| share.binary_search(&case).is_ok() && !done(case))?;
-    let wanted = slots.min(share.len());
-    // What the host holds of a case whose linear systems are on a device is small, and how many of
-    // those there are is for the device to say.
-    let room = (!(device && alone)).then(memory::room);
-    let slots = room.as_ref().map_or(wanted, |room| at_a_time(share.iter().map(|&case| &study.cases[case].case), wanted, room));
-    let pools = pools(slots)?;
-    memory::side_by_side(slots);
-    let short = room
-        .filter(|_| slots < wanted)
-        .map_or(String::new(), |room| format!(", not {wanted}: there is memory for no more, of {room}"));
-    let earlier = match (options.resume || options.shard.is_some(), options.force) {
-        // Shares run into one directory, side by side or one after the other: what the others left
-        // stays.
-        (true, _) => Earlier::Keep,
-        (false, true) => Earlier::Replace,
-        (false, false) => Earlier::Refuse,
-    };
-    let Begun { study, mut rows, lock } = begin(directory, study, earlier, |study, rows| {
-        let there = |&case: &usize| Some(directory.case(&study.cases[case].id)).filter(OutputDirectory::holds_result);
-        let computed: Vec<_> = share.iter().filter_map(|case| computed(&there(case)?)).collect();
-        if !options.resume && !options.force && !computed.is_empty() {
-            return Err(earlier_results(directory, &computed));
-        }
-        if !options.resume {
-            share.iter().for_each(|&case| rows[case] = Row::pending());
-        }
-        Ok(())
-    })?;
+    let Concurrency { count, short } = Concurrency::of(study, &share, devices.is_there(), options.threads);
+    let pools = pools(count)?;
+    memory::side_by_side(count);
+    let Begun { study, mut rows, lock } = begin_share(directory, study, options, &share)?;
     let (study, lock) = (&study, &lock);
-    for &case in share.iter().filter(|&&case| rows[case].status == RowStatus::Done) {
-        // Killed just before its checkpoint was removed; what cannot be removed does no harm.
-        let _ = directory.case(&study.cases[case].id).tidy(false, false);
-    }
     let open = |row: &Row| match row.status {
         RowStatus::Done => false,
         RowStatus::Pending | RowStatus::Failed => true,
@@ -183,19 +144,7 @@ pub(crate) fn run_on(
         locks: Mutex::default(),
     };
     let mut table = Table { study, directory, lock, rows, written: Instant::now(), took: Duration::ZERO };
-    let mut finished = |case: usize, result: Result<Summary, String>| {
-        let fault = |what| format!("the program panicked: {what}. This is a fault of the program, please report it");
-        let row = Row::of(result.unwrap_or_else(|what| simulator.broke_off(case, &fault(what))));
-        simulator.release(case);
-        progress.finished(case, &study.cases[case].id, &row);
-        table.rows[case] = row;
-        table.write_if_due()
-    };
-    let computed = if device {
-        on_device(&simulator, (devices, options.precision), &pools, &order, &mut finished)
-    } else {
-        on_cores(&simulator, (devices, options.precision), &pools, &order, &mut finished)
-    };
+    let computed = compute(&simulator, (devices, options.precision), &pools, &order, &mut table);
     progress.end();
     // Another process may have computed other shares in the meantime.
     for (case, found) in read_rows(study, directory).into_iter().enumerate() {
@@ -206,6 +155,91 @@ pub(crate) fn run_on(
     let broke_off = |source| StudyError::BrokeOff { source: Box::new(source), dir: dir.to_owned() };
     computed.and_then(|()| table.write()).map_err(broke_off)?;
     Ok(Report::of(study, &table.rows, &share))
+}
+
+/// How many cases of a share are computed side by side.
+struct Concurrency {
+    count: usize,
+    /// Why they are no more, where memory is what there is too little of.
+    short: String,
+}
+
+impl Concurrency {
+    /// On a device or on so many threads.
+    fn of(study: &Study, share: &[usize], device: bool, threads: usize) -> Self {
+        // Over a plane the device does nearly all of the work, and the threads of the cases wait
+        // for it; the linear systems of two bodies, and those that are to be solved directly, take
+        // the cores.
+        let there = |case: &Case| case.opponent.is_none() && case.solver.linear == Linear::Multigrid;
+        let alone = study.cases.iter().all(|case| there(&case.case));
+        let most = match (device, alone) {
+            (true, true) => LARGEST_BATCH,
+            (true, false) => (2 * threads).clamp(1, LARGEST_BATCH),
+            (false, _) => threads.max(1),
+        };
+        let wanted = most.min(share.len());
+        // What the host holds of a case whose linear systems are on a device is small, and how many
+        // of those there are is for the device to say.
+        if device && alone {
+            return Self { count: wanted, short: String::new() };
+        }
+        let room = memory::room();
+        let count = at_a_time(share.iter().map(|&case| &study.cases[case].case), wanted, &room);
+        let short =
+            if count < wanted { format!(", not {wanted}: there is memory for no more, of {room}") } else { String::new() };
+        Self { count, short }
+    }
+}
+
+/// Prepares the folder of a study of which a share is to be computed, and tidies after those cases
+/// of it that are done.
+fn begin_share(directory: &StudyDirectory, study: &Study, options: &Options, share: &[usize]) -> Result<Begun, StudyError> {
+    let earlier = match (options.resume || options.shard.is_some(), options.force) {
+        // Shares run into one directory, side by side or one after the other: what the others left
+        // stays.
+        (true, _) => Earlier::Keep,
+        (false, true) => Earlier::Replace,
+        (false, false) => Earlier::Refuse,
+    };
+    let begun = begin(directory, study, earlier, |study, rows| {
+        let there = |&case: &usize| Some(directory.case(&study.cases[case].id)).filter(OutputDirectory::holds_result);
+        let computed: Vec<_> = share.iter().filter_map(|case| computed(&there(case)?)).collect();
+        if !options.resume && !options.force && !computed.is_empty() {
+            return Err(earlier_results(directory, &computed));
+        }
+        if !options.resume {
+            share.iter().for_each(|&case| rows[case] = Row::pending());
+        }
+        Ok(())
+    })?;
+    for &case in share.iter().filter(|&&case| begun.rows[case].status == RowStatus::Done) {
+        // Killed just before its checkpoint was removed; what cannot be removed does no harm.
+        let _ = directory.case(&begun.study.cases[case].id).tidy(false, false);
+    }
+    Ok(begun)
+}
+
+/// Computes cases in an order, and puts the row of each that ends into the table.
+fn compute(
+    simulator: &Simulator<'_>,
+    on: (&Devices, PrecisionChoice),
+    pools: &[ThreadPool],
+    order: &[usize],
+    table: &mut Table<'_>,
+) -> Result<(), StudyError> {
+    let mut finished = |case: usize, result: Result<Summary, String>| {
+        let fault = |what| format!("the program panicked: {what}. This is a fault of the program, please report it");
+        let row = Row::of(result.unwrap_or_else(|what| simulator.broke_off(case, &fault(what))));
+        simulator.release(case);
+        simulator.progress.finished(case, &simulator.cases[case].id, &row);
+        table.rows[case] = row;
+        table.write_if_due()
+    };
+    if on.0.is_there() {
+        on_device(simulator, on, pools, order, &mut finished)
+    } else {
+        on_cores(simulator, on, pools, order, &mut finished)
+    }
 }
 
 /// A study whose folder is prepared.
@@ -332,9 +366,6 @@ impl Table<'_> {
         Ok(())
     }
 }
-
-/// Hears of a case that has ended.
-pub(super) type Finished<'a> = dyn FnMut(usize, Result<Summary, String>) -> Result<(), StudyError> + 'a;
 
 /// Every case on a core of its own.
 fn on_cores(

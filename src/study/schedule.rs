@@ -9,6 +9,10 @@ use std::sync::mpsc;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::StudyError;
+use crate::output::Summary;
+
+/// Hears of a case that has ended.
+pub type Finished<'a> = dyn FnMut(usize, Result<Summary, String>) -> Result<(), StudyError> + 'a;
 
 /// `count` pools of one thread each.
 ///

@@ -11,6 +11,7 @@ use crate::compute::cpu::Cpu;
 use crate::compute::{About, Answer, Call, CaseFields, CaseModel, Compute, ComputeError};
 use crate::output::{OutputDirectory, Status, Summary};
 use crate::simulation::drive::{Drive, Ending, Observer, StepView};
+use crate::simulation::error::ObserverError;
 use crate::simulation::problem::Problem;
 use crate::simulation::record::StepRecord;
 
@@ -103,11 +104,11 @@ struct Seen {
 }
 
 impl Observer for Seen {
-    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError> {
         self.rows.push(view.record.0);
         Ok(())
     }
-    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError> {
         self.fields.push(view.fields()?);
         Ok(())
     }

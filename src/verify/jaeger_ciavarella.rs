@@ -36,7 +36,7 @@ const SPHERE: ElasticSphere = ElasticSphere { radius: RADIUS, youngs_modulus: YO
 /// The unloading as a model expects it: where to take samples. What is compared uses the computed
 /// curve.
 fn expected() -> Unloading {
-    let hardening = olsson_larsson::Hardening::ThreeParameter {
+    let hardening = olsson_larsson::OlssonLarssonHardening::ThreeParameter {
         yield_stress: YIELD_STRESS,
         coefficient: MODULUS / YIELD_STRESS,
         exponent: 1.0,

@@ -32,6 +32,7 @@ pub mod table;
 
 mod cattaneo_mindlin;
 mod couple;
+mod error;
 mod hertz;
 mod invariance;
 mod jaeger_ciavarella;
@@ -44,25 +45,9 @@ mod spence;
 use std::time::{Duration, Instant};
 
 pub use check::{Check, Reference, Scale, Verdict};
+pub use error::VerifyError;
 pub use report::Report;
-pub use runner::{BackendFactory, Level, Runner};
-
-use crate::compute::ComputeError;
-use crate::simulation::SimulationError;
-
-/// Why a family of checks has no result.
-#[derive(Debug, thiserror::Error)]
-pub enum VerifyError {
-    /// A case could not be set up, or the device failed.
-    #[error(transparent)]
-    Simulation(#[from] SimulationError),
-    /// The device failed.
-    #[error(transparent)]
-    Compute(#[from] ComputeError),
-    /// A path could not be followed to its end.
-    #[error("{0}")]
-    Stopped(String),
-}
+pub use runner::{BackendFactory, Fineness, Runner};
 
 /// A group of checks that share their cases.
 #[derive(Clone, Copy, Debug)]

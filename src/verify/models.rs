@@ -74,7 +74,7 @@ pub fn checks(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
 
 /// Hbar and c^2 at a contact radius: Olsson & Larsson's, then Jackson & Green's.
 pub(super) fn models(yield_stress: f64, a: f64) -> [[f64; 2]; 2] {
-    let larsson = OlssonLarsson { sphere: BALL, hardening: olsson_larsson::Hardening::Ideal { yield_stress } };
+    let larsson = OlssonLarsson { sphere: BALL, hardening: olsson_larsson::OlssonLarssonHardening::Ideal { yield_stress } };
     let green = JacksonGreen { sphere: BALL, yield_stress };
     // Jackson & Green give both over h: the h at which their contact is as large.
     let h = bisect(0.1 * a * a / RADIUS, 2.0 * a * a / RADIUS, |h| green.contact_radius(h) - a);
@@ -126,7 +126,8 @@ mod tests {
     fn the_models_pass_and_what_is_further_off_than_they_are_worth_does_not() {
         for h in [0.005, 0.01, 0.02] {
             // Olsson & Larsson's own contact.
-            let larsson = OlssonLarsson { sphere: BALL, hardening: olsson_larsson::Hardening::Ideal { yield_stress: 400.0 } };
+            let larsson =
+                OlssonLarsson { sphere: BALL, hardening: olsson_larsson::OlssonLarssonHardening::Ideal { yield_stress: 400.0 } };
             let model = StepRecord { h, f_n: larsson.force(h), a: larsson.contact_radius(h), ..StepRecord::default() };
             let verdicts = |row: StepRecord| against_models(400.0, &row).map(|check| check.verdict());
             assert_eq!(verdicts(model), [Verdict::Pass; 2], "h = {h}");

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Check, FamilyReport, Level, Runner, Verdict};
+use super::{Check, FamilyReport, Fineness, Runner, Verdict};
 
 /// The result of a verification.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -10,7 +10,7 @@ pub struct Report {
     /// Version of the program.
     pub version: &'static str,
     /// How finely the cases were meshed.
-    pub level: Level,
+    pub level: Fineness,
     /// Device of the last case.
     pub device: String,
     /// Precision of its residual.

@@ -20,7 +20,7 @@ pub type BackendFactory<'a> = dyn FnMut(Vec<CaseModel>) -> Result<Box<dyn Comput
 /// How finely the cases are meshed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Level {
+pub enum Fineness {
     /// Meshes with which all checks take about a minute.
     #[default]
     Quick,
@@ -32,14 +32,14 @@ pub enum Level {
 pub struct Runner<'a> {
     backend: &'a mut BackendFactory<'a>,
     /// How finely the cases are meshed.
-    pub level: Level,
+    pub level: Fineness,
     equator: Vec<(f64, Equator)>,
     computed_on: Option<Description>,
 }
 
 impl<'a> Runner<'a> {
     /// A runner whose cases are computed by what `backend` makes.
-    pub fn new(backend: &'a mut BackendFactory<'a>, level: Level) -> Self {
+    pub fn new(backend: &'a mut BackendFactory<'a>, level: Fineness) -> Self {
         Self { backend, level, equator: Vec::new(), computed_on: None }
     }
 
@@ -51,8 +51,8 @@ impl<'a> Runner<'a> {
     /// Elements along the contact radius: `quick`, or at the fine level at least [`FINE`].
     pub fn elements(&self, quick: usize) -> usize {
         match self.level {
-            Level::Quick => quick,
-            Level::Fine => quick.max(FINE),
+            Fineness::Quick => quick,
+            Fineness::Fine => quick.max(FINE),
         }
     }
 

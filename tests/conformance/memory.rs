@@ -6,7 +6,7 @@ use asperity::internals::compute::iterate::Keeps;
 use asperity::internals::compute::{CaseModel, Compute};
 use asperity::internals::contact::coulomb::Friction;
 use asperity::internals::mesh::{Mesh, SphereSpec, sphere_mesh};
-use asperity::material::{Elasticity, Hardening, Material};
+use asperity::material::{Elasticity, FlowStress, Material};
 use std::sync::Arc;
 
 const MEGABYTE: u64 = 1_000_000;
@@ -45,7 +45,7 @@ fn memory(name: &str, mesh: &Mesh) -> Option<[u64; 2]> {
         let context = device(name, Precision::F64)?;
         let model = || CaseModel {
             mesh: Arc::new(mesh.clone()),
-            material: Material { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::ideal(2e-3).unwrap() },
+            material: Material { elasticity: Elasticity::new(1.0, 0.3), hardening: FlowStress::ideal(2e-3).unwrap() },
             friction: Friction::Coulomb(0.3),
             opponent: None,
         };

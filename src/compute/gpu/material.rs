@@ -8,7 +8,7 @@ use super::error::GpuError;
 use super::layout::{ANSWER, PARAMETERS, RELATIVE, STATE, TANGENT};
 use super::pipelines::Bound;
 use super::shader_sources::RETURN_MAPPING;
-use crate::material::{Hardening, Material};
+use crate::material::{FlowStress as Hardening, Material};
 use crate::real::Real;
 
 /// What became of a point; the numbers are those of `shaders/material/material.wgsl`.

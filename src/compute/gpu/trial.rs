@@ -13,7 +13,7 @@ use crate::bounded;
 use crate::compute::cpu::Cpu;
 use crate::compute::{Call, CaseModel, Compute, ComputeError};
 use crate::contact::coulomb::Friction;
-use crate::material::{Elasticity, Hardening, Material};
+use crate::material::{Elasticity, FlowStress as Hardening, Material};
 use crate::mesh::brick::brick;
 use serde::{Deserialize, Serialize};
 use std::fmt;

@@ -10,7 +10,7 @@ fn with_skin() -> Arc<Mesh> {
     Arc::new(sphere_mesh(&spec).unwrap())
 }
 
-fn of(mesh: &Arc<Mesh>, hardening: Hardening<f64>) -> CaseModel {
+fn of(mesh: &Arc<Mesh>, hardening: FlowStress<f64>) -> CaseModel {
     let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening };
     CaseModel { mesh: mesh.clone(), material, friction: Friction::Coulomb(0.3), opponent: None }
 }
@@ -33,7 +33,7 @@ fn a_uniform_deformation_passes_through_corners_that_hang() {
     let gradient = [[1.01 * c, -0.99 * s, 0.004], [1.01 * s, 0.99 * c, -0.002], [0.003, 0.001, 1.004]];
     let moved = |x: &[f64; 3]| [0, 1, 2].map(|i| (0..3).map(|j| gradient[i][j] * x[j]).sum::<f64>() - x[i]);
     let u: Vec<f64> = mesh.nodes.iter().flat_map(moved).collect();
-    let mut cpu = Cpu::<f64>::new(vec![of(&mesh, Hardening::Elastic)]).unwrap();
+    let mut cpu = Cpu::<f64>::new(vec![of(&mesh, FlowStress::Elastic)]).unwrap();
     let force = forces(&mut cpu, &u);
     let largest = |inside: bool| {
         let nodes = mesh.nodes.iter().enumerate().filter(|(_, x)| on_boundary(x) != inside);
@@ -47,7 +47,7 @@ fn a_uniform_deformation_passes_through_corners_that_hang() {
 #[test]
 fn the_tangent_is_the_derivative_across_corners_that_hang() {
     let mesh = with_skin();
-    let mut cpu = Cpu::<f64>::new(vec![of(&mesh, Hardening::Elastic)]).unwrap();
+    let mut cpu = Cpu::<f64>::new(vec![of(&mesh, FlowStress::Elastic)]).unwrap();
     commit(&mut cpu, 0, &displacement(&mesh, 5e-3));
     let u = displacement(&mesh, 2e-2);
     let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);

@@ -4,7 +4,7 @@
 use super::super::table::{FIRST_N, LN_FORCE, LN_STIFFNESS, RADIAL_SLIP, RECOVERED, ROWS, Table, UNSHEARED_N, exponent};
 use super::super::virgin::{FirstLoading, measured_slope};
 use super::drive::{Driven, Slides};
-use super::steady_loss;
+use super::losses::steady_loss;
 
 /// Greatest r of an oblique press over mu.
 const MOST: f64 = 0.97;

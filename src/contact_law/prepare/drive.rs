@@ -1,7 +1,7 @@
 //! Sliders that are driven by hand along one axis.
 
+use super::super::state::ContactState;
 use super::super::table::{SLIDERS, WEIGHTS, lost};
-use super::super::update::ContactState;
 
 /// What the sliders are while they move.
 pub(super) struct Slides {

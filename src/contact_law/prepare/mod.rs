@@ -7,15 +7,18 @@
 
 mod coefficients;
 mod drive;
+mod losses;
 mod shapes;
 
 use self::coefficients::Coefficients;
+use self::losses::{costs, power};
 use super::constants::Constants;
+use super::state::ContactState;
 use super::table::{
     COLUMNS, FIRST_N, GAMMA, LEVELS, LN_FORCE, LN_RADIUS, LN_STIFFNESS, PLACES, RADIAL_SLIP, RECOVERED, ROWS, SHAPES, SOFTENING,
     SUDDEN, Table, UNSHEARED_N,
 };
-use super::update::{ContactState, moved};
+use super::update::moved;
 use super::virgin::{FirstLoading, Virgin};
 
 /// How far beyond its last knot the columns go on.
@@ -29,8 +32,6 @@ const LEAST_FRICTION: f64 = 1e-9;
 /// in proportion: a table that is fitted to simulations lessens it, the first reversal takes that
 /// back.
 pub const KEPT: f64 = 0.6;
-/// Share of F_N0 lost to shear below which a contact is elastic the more.
-const HARDLY: f64 = 0.02;
 /// n - 1 of a reversal, at the least.
 const LEAST_N: f64 = 0.02;
 /// mu in whose neighbourhood a release takes less of the yield force.
@@ -104,16 +105,6 @@ fn fill_rows(first: &FirstLoading, table: &mut Table) {
     }
 }
 
-fn power(base: f64, exponent: f64) -> f64 {
-    if base > 0.0 {
-        base.powf(exponent)
-    } else if exponent > 0.0 {
-        0.0
-    } else {
-        1.0
-    }
-}
-
 /// n of a first reversal, from that of the curves, which is between it and those after; where much
 /// is lost to shear it is nearer to those. Held below a limit. That of an elastic contact is its
 /// own.
@@ -122,15 +113,4 @@ fn first_exponent(virgin: &Virgin, constants: &Constants) -> f64 {
     let x = constants.first * own / (kept / KEPT).min(1.0);
     let x = x / (1.0 + (x / constants.first_most).powi(8)).powf(0.125);
     1.0 + (own + costs(virgin) * (x - own)).max(LEAST_N)
-}
-
-/// 1 of a contact that shear costs F_N, 0 of an elastic one.
-fn costs(virgin: &Virgin) -> f64 {
-    ((1.0 - virgin.point.f_n_slip / virgin.point.f_n0) / HARDLY).min(1.0)
-}
-
-/// Share of the yield force that a steady press loses at the ratio r, where c is the flow
-/// coefficient.
-fn steady_loss(constants: &Constants, c: f64, r: f64) -> f64 {
-    if r > 0.0 { constants.loss * c * r * r * r / (r + constants.loss_small) } else { 0.0 }
 }

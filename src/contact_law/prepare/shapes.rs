@@ -1,13 +1,13 @@
 //! The shapes of one level from the shear at constant h.
 
+use super::super::state::ContactState;
 use super::super::table::{
     COLUMNS, FIRST_N, FLOW, GAMMA, LN_FORCE, LN_STIFFNESS, LOST, MOBILISED, PLACES, SOLVED, SUDDEN, Table, UNSHEARED_N, VERTEX,
     exponent, place,
 };
-use super::super::update::ContactState;
 use super::super::virgin::Virgin;
 use super::drive::{Driven, Slides, root};
-use super::{costs, power, steady_loss};
+use super::losses::{costs, power, steady_loss};
 
 /// Points along a shear.
 const WAY: usize = 144;

@@ -3,6 +3,7 @@
 //! The simulations have companions ([`crate::simulation::scout`]), and what counts are the curves
 //! at the limit of fine meshes, where they are known.
 
+mod path;
 mod protocol;
 mod random;
 mod turning;
@@ -14,7 +15,7 @@ use std::sync::atomic::AtomicBool;
 use rayon::prelude::*;
 
 use super::{LawError, LawFile};
-use crate::case::{Case, Fields, check_room};
+use crate::case::{Case, check_room};
 use crate::contact_law::path::drive_in_the_plane;
 use crate::contact_law::{Centres, ContactParameters};
 use crate::law::data::at_the_limit;
@@ -25,18 +26,10 @@ use crate::simulation::follow::{follow, on_cpu};
 use crate::simulation::problem::Problem;
 use crate::simulation::scout::{first_zone, scout};
 
+pub use path::{Path, meshed};
 pub use protocol::{materials, protocol};
 pub use random::{KINDS, Ranges, drawn, opponent_of, random_paths};
 pub use turning::turning_paths;
-
-/// A path to be checked.
-#[derive(Clone, Debug)]
-pub struct Path {
-    /// What it is.
-    pub name: &'static str,
-    /// The case to simulate.
-    pub case: Case,
-}
 
 /// Increments of the update between two steps of a simulation: an engine's steps are short, and an
 /// oblique press still depends on them a little.
@@ -149,18 +142,6 @@ fn tangential(row: &StepRecord) -> f64 {
 fn peak(rows: &[StepRecord], force: impl Fn(&StepRecord) -> f64) -> f64 {
     let normal = rows.iter().map(|row| row.f_n).fold(0.0, f64::max);
     rows.iter().map(|row| force(row).abs()).fold(0.01 * normal, f64::max)
-}
-
-/// A case on the mesh of a check: so many elements along the contact radius inside and twice as
-/// many at the surface, with a companion, and no pictures.
-pub fn meshed(case: &Case, elements: usize) -> Case {
-    let mut case = case.clone();
-    case.mesh = case.mesh.refined(elements);
-    case.mesh.contact_radius = None;
-    case.solver.error_estimate = true;
-    case.output.fields = Fields::None;
-    case.output.plots = false;
-    case
 }
 
 /// Simulates paths and drives the update that the law exports along them, paths side by side; once

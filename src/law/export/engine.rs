@@ -1,13 +1,15 @@
 //! The law of one material and one friction for engines, beside the update that uses it.
 
+use super::file::{ExportedFile, plain};
 use super::vectors::{SEED, unit_vectors};
-use super::{ExportedFile, MODULE, plain};
 use crate::case::Case;
 use crate::contact_law::SLIDERS;
 use crate::contact_law::export::{EngineTable, HEADER_NAME, check_program, fill, header, header_3d};
 use crate::law::range::OutOfRange;
 use crate::law::table::{Against, is_on_a_flat};
 use crate::law::{LawError, LawFile};
+
+const MODULE: &str = include_str!("asperity_law.py");
 
 /// What an engine gets.
 struct Unit {

@@ -4,19 +4,19 @@
 //! What of them is the update comes from [`contact_law::export`](crate::contact_law::export).
 
 mod engine;
+mod file;
 mod start;
 mod vectors;
 
 pub use engine::{beyond_the_law, engine_files, engine_source};
+pub use file::ExportedFile;
 pub use start::{Engine, Start, start_files};
 pub use vectors::unit_vectors;
 
 use self::engine::python_files;
 use super::{LawError, LawFile};
-use crate::case::{Case, Hardening};
+use crate::case::Case;
 use crate::contact_law::export::{HEADER_NAME, header};
-
-const MODULE: &str = include_str!("asperity_law.py");
 
 /// A language of the export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,15 +25,6 @@ pub enum Language {
     C,
     /// One module, Python 3.8 or later, and a C compiler.
     Python,
-}
-
-/// A file of an export.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ExportedFile {
-    /// Its name.
-    pub name: String,
-    /// Its content.
-    pub content: String,
 }
 
 /// The files of any kind of law: the law itself first, then what belongs to it. A table needs no
@@ -62,20 +53,4 @@ pub fn law_source(law: &LawFile, language: Language, case: Option<&Case>) -> Res
 /// A header with the update in place of the line that includes it.
 fn in_one_file(text: &str) -> String {
     text.replacen(&format!("#include \"{HEADER_NAME}\"\n"), &header(), 1)
-}
-
-/// The code of a hardening law, its numbers in the exports, and which of them are stresses.
-fn hardening_numbers(hardening: &Hardening) -> (u8, [f64; 3], [bool; 3]) {
-    let (law, numbers) = (hardening.kind(), hardening.numbers());
-    let parameters = law.parameters();
-    (
-        law.code(),
-        std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(0.0)),
-        std::array::from_fn(|i| parameters.get(i).is_some_and(|parameter| parameter.is_stress)),
-    )
-}
-
-/// A name that can stand in a comment of any language.
-fn plain(name: &str) -> String {
-    name.chars().map(|c| if c.is_ascii_alphanumeric() || "-_. ".contains(c) { c } else { '_' }).collect()
 }

@@ -3,8 +3,8 @@
 
 use std::fmt::Write as _;
 
-use super::ExportedFile;
 use super::engine::{TableFile, beyond_the_law, table_file};
+use super::file::ExportedFile;
 use crate::case::{Case, Friction, Opponent, Segment};
 use crate::contact_law::export::{HEADER_NAME, fill, header, header_3d};
 use crate::law::range::OutOfRange;

@@ -1,6 +1,6 @@
 //! Test vectors: random paths of random contacts.
 
-use crate::case::Material;
+use crate::case::{Hardening, Material};
 use crate::contact_law::ContactParameters;
 use crate::contact_law::export::vectors::{COLUMNS, Contact, write_steps};
 use crate::random::Seeded;
@@ -15,7 +15,7 @@ const PATHS: usize = 12;
 pub fn unit_vectors(unit: &ContactParameters, material: &Material, deepest: f64, seed: u64) -> String {
     let mut text = format!("{COLUMNS}\n");
     let mut random = Seeded::new(seed);
-    let (kind, numbers, stresses) = super::hardening_numbers(&material.hardening);
+    let (kind, numbers, stresses) = hardening_numbers(&material.hardening);
     for path in 0..PATHS {
         let e = (10f64).powf(random.between(0.0, 12.0));
         let radius = (10f64).powf(random.between(-4.0, 1.0));
@@ -26,4 +26,15 @@ pub fn unit_vectors(unit: &ContactParameters, material: &Material, deepest: f64,
         write_steps(path, &contact, deepest * radius, &mut random, &mut text);
     }
     text
+}
+
+/// The code of a hardening law, its numbers in the exports, and which of them are stresses.
+fn hardening_numbers(hardening: &Hardening) -> (u8, [f64; 3], [bool; 3]) {
+    let (law, numbers) = (hardening.kind(), hardening.numbers());
+    let parameters = law.parameters();
+    (
+        law.code(),
+        std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(0.0)),
+        std::array::from_fn(|i| parameters.get(i).is_some_and(|parameter| parameter.is_stress)),
+    )
 }

@@ -41,13 +41,13 @@ pub struct NormalState {
 }
 
 /// What the corrections depend on.
-struct Level {
+struct CorrectionInputs {
     ramp: f64,
     ratio: f64,
     hardening: f64,
 }
 
-impl Level {
+impl CorrectionInputs {
     fn at(body: &Body, a: f64) -> Self {
         let ratio = (body.lambda(a) / yield_lambda(body.sphere.poissons_ratio)).max(1.0);
         Self { ramp: 1.0 - 1.0 / ratio, ratio, hardening: body.hardening_exponent(a) }
@@ -81,7 +81,7 @@ pub(super) fn contact_radius(constants: &[f64; 4], body: &Body, h: f64) -> f64 {
         return hertz;
     }
     let [b1, b2, b3, b4] = *constants;
-    let Level { ramp, ratio, hardening } = Level::at(body, hertz);
+    let CorrectionInputs { ramp, ratio, hardening } = CorrectionInputs::at(body, hertz);
     let growth = plastic_c_squared(0.0) * (-b1 * hardening).exp() - 0.5;
     let c_squared = 0.5 + growth * (1.0 - (-(b2 * ratio.ln()).powf(b3)).exp());
     hertz * (2.0 * c_squared * (b4 * ramp * hertz / sphere.radius).exp()).sqrt()
@@ -99,7 +99,7 @@ pub(super) fn normal_force(constants: &[f64; 6], body: &Body, friction: f64, h: 
         return hertz_force * elastic.exp();
     }
     let [k1, k2, k3, k4, k5, k6] = *constants;
-    let Level { ramp, ratio, hardening } = Level::at(body, hertz_radius);
+    let CorrectionInputs { ramp, ratio, hardening } = CorrectionInputs::at(body, hertz_radius);
     let plastic = (k1 * excess.powf(k2)).powf(k3);
     let rest = (1.0 - ramp) * elastic + ramp * ((k6 - k4 * ratio.ln()) * size - k5 * hardening);
     hertz_force * (1.0 + plastic).powf(-1.0 / k3) * rest.exp()

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::components::{COMPONENTS, Components, Curve};
 use super::inputs::{self, INPUTS, inputs};
 use super::outputs::{self, NUMBERS, Outputs, outputs};
-use super::process::{Place, Process};
+use super::process::{InputPoint, Process};
 use super::{FORMAT, Input, Interpolated, NormalErrors, Source, VERSION, bodies, keeps_its_force};
 use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Hold, Material, Opponent, Segment};
@@ -70,7 +70,7 @@ pub fn fit(dir: &Path, reversal: Option<&Interpolated>) -> Result<Interpolated, 
         });
     };
     let spread = spread(&samples);
-    let places: Vec<Place> =
+    let places: Vec<InputPoint> =
         samples.iter().map(|s| std::array::from_fn(|i| (s.inputs[i] - spread[i].mean) / spread[i].deviation)).collect();
     let curves = |of: fn(&Outputs) -> Curve| Components::of(&samples.iter().map(|s| of(&s.outputs)).collect::<Vec<_>>());
     let ((ratio, of_ratio), (normal, of_normal)) = (curves(|o| o.ratio), curves(|o| o.normal));

@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 use self::components::{COMPONENTS, Components};
 use self::inputs::{FRICTION, INPUTS, LAMBDA, POISSON, SIZE, inputs};
 use self::outputs::{NUMBERS, Outputs};
-use self::process::{Place, Process};
+use self::process::{InputPoint, Process};
 use super::LawError;
 use super::json;
 use super::range::{Interval, MARGIN, OutOfRange};
@@ -122,7 +122,7 @@ pub struct Interpolated {
     /// The functions: the numbers, the components of F_T/F_N, those of F_N.
     pub processes: Vec<Process>,
     /// The samples' inputs, less their mean, over their deviation.
-    pub samples: Vec<Place>,
+    pub samples: Vec<InputPoint>,
     /// The law of two equal spheres, for any two bodies of one material and for the press of any
     /// others; without it all are put in series from spheres on a plane.
     #[serde(skip)]

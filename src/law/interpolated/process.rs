@@ -27,7 +27,7 @@ const STEPS: [f64; 3] = [0.2, 1e-3, 1.0];
 const UNKNOWNS: usize = INPUTS + 3;
 
 /// A point in the inputs, each over its deviation.
-pub type Place = [f64; INPUTS];
+pub type InputPoint = [f64; INPUTS];
 
 /// One function.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -55,20 +55,20 @@ fn matern(square: f64) -> [f64; 2] {
     [(1.0 + r + r * r / 3.0) * decay, -5.0 / 6.0 * (1.0 + r) * decay]
 }
 
-fn square(a: &Place, b: &Place, lengths: &Place) -> f64 {
+fn square(a: &InputPoint, b: &InputPoint, lengths: &InputPoint) -> f64 {
     (0..INPUTS).map(|i| ((a[i] - b[i]) / lengths[i]).powi(2)).sum()
 }
 
-fn dot(a: &Place, b: &Place) -> f64 {
+fn dot(a: &InputPoint, b: &InputPoint) -> f64 {
     (0..INPUTS).map(|i| a[i] * b[i]).sum()
 }
 
 /// Lengths and variances of their logarithms.
-fn of_logarithms(p: &[f64; UNKNOWNS]) -> (Place, [f64; 3]) {
+fn of_logarithms(p: &[f64; UNKNOWNS]) -> (InputPoint, [f64; 3]) {
     (std::array::from_fn(|i| p[i].exp()), std::array::from_fn(|i| p[INPUTS + i].exp()))
 }
 
-fn factor(places: &[Place], lengths: &Place, variances: [f64; 3]) -> Option<Cholesky<f64, Dyn>> {
+fn factor(places: &[InputPoint], lengths: &InputPoint, variances: [f64; 3]) -> Option<Cholesky<f64, Dyn>> {
     let [smooth, noise, linear] = variances;
     let n = places.len();
     let mut k = DMatrix::zeros(n, n);
@@ -83,7 +83,7 @@ fn factor(places: &[Place], lengths: &Place, variances: [f64; 3]) -> Option<Chol
 }
 
 /// Minus the logarithm of the marginal likelihood, a sample, and its gradient.
-fn misfit(places: &[Place], values: &DVector<f64>, p: &[f64; UNKNOWNS]) -> Option<(f64, [f64; UNKNOWNS])> {
+fn misfit(places: &[InputPoint], values: &DVector<f64>, p: &[f64; UNKNOWNS]) -> Option<(f64, [f64; UNKNOWNS])> {
     let (lengths, variances) = of_logarithms(p);
     let factor = factor(places, &lengths, variances)?;
     let n = places.len() as f64;
@@ -117,7 +117,7 @@ fn misfit(places: &[Place], values: &DVector<f64>, p: &[f64; UNKNOWNS]) -> Optio
 }
 
 /// The logarithms of lengths and variances that are the most likely.
-fn most_likely(places: &[Place], values: &DVector<f64>) -> [f64; UNKNOWNS] {
+fn most_likely(places: &[InputPoint], values: &DVector<f64>) -> [f64; UNKNOWNS] {
     let kind = |i: usize| if i < INPUTS { 0 } else { i - INPUTS + 1 };
     let mut p: [f64; UNKNOWNS] = std::array::from_fn(|i| START[kind(i)]);
     let [first, least, greatest] = STEPS;
@@ -150,12 +150,18 @@ impl Process {
     /// The function through `values` at `places`, and what it would be at each if the samples of
     /// the same group were not known. Lengths and variances are those of the samples `tuned`.
     /// `None` if the covariance cannot be factored.
-    pub fn fit(name: String, places: &[Place], values: &[f64], groups: &[usize], tuned: &[usize]) -> Option<(Self, Vec<f64>)> {
+    pub fn fit(
+        name: String,
+        places: &[InputPoint],
+        values: &[f64],
+        groups: &[usize],
+        tuned: &[usize],
+    ) -> Option<(Self, Vec<f64>)> {
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
         let deviation = (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt().max(1e-12);
         let scaled = DVector::from_iterator(values.len(), values.iter().map(|x| (x - mean) / deviation));
-        let some: Vec<Place> = tuned.iter().map(|&i| places[i]).collect();
+        let some: Vec<InputPoint> = tuned.iter().map(|&i| places[i]).collect();
         let logarithms = most_likely(&some, &DVector::from_iterator(tuned.len(), tuned.iter().map(|&i| scaled[i])));
         let (lengths, variances) = of_logarithms(&logarithms);
         let factor = factor(places, &lengths, variances)?;
@@ -167,7 +173,7 @@ impl Process {
     }
 
     /// The value at `place`, the samples being at `places`.
-    pub fn at(&self, places: &[Place], place: &Place) -> f64 {
+    pub fn at(&self, places: &[InputPoint], place: &InputPoint) -> f64 {
         let [smooth, _, linear] = self.variances;
         let sum: f64 = places
             .iter()
@@ -201,12 +207,12 @@ mod tests {
     use super::*;
 
     /// Points that fill the inputs evenly (R2 of Roberts).
-    fn places(n: usize) -> Vec<Place> {
+    fn places(n: usize) -> Vec<InputPoint> {
         let base: f64 = 1.0 / 1.1;
         (0..n).map(|i| std::array::from_fn(|d| 4.0 * ((i + 1) as f64 * base.powi(d as i32 + 1)).fract() - 2.0)).collect()
     }
 
-    fn function(p: &Place) -> f64 {
+    fn function(p: &InputPoint) -> f64 {
         3.0 + p[0].sin() + 0.5 * p[1] * p[2] - 0.3 * p[5]
     }
 
@@ -216,7 +222,7 @@ mod tests {
         let values: Vec<f64> = places.iter().map(function).collect();
         let all: Vec<usize> = (0..places.len()).collect();
         let (process, _) = Process::fit("f".to_owned(), &places, &values, &all, &all).unwrap();
-        let error = |at: Place| (process.at(&places, &at) - function(&at)).abs();
+        let error = |at: InputPoint| (process.at(&places, &at) - function(&at)).abs();
         assert!(error([0.3, -0.4, 0.9, 0.1, 0.0, 1.0, -0.2, 0.5]) < 0.05);
         assert!(error([-1.3, 0.4, -0.9, 0.7, 0.3, -1.0, 0.2, -0.5]) < 0.05);
         assert!(process.lengths[3] > 4.0 * process.lengths[0], "{:?}", process.lengths);
@@ -231,7 +237,7 @@ mod tests {
         let (process, unseen) = Process::fit("f".to_owned(), &places, &values, &groups, &all).unwrap();
         // The same lengths, variances, mean and deviation without the group 3.
         let rest: Vec<usize> = (0..40).filter(|&i| groups[i] != 3).collect();
-        let kept: Vec<Place> = rest.iter().map(|&i| places[i]).collect();
+        let kept: Vec<InputPoint> = rest.iter().map(|&i| places[i]).collect();
         let known = DVector::from_iterator(rest.len(), rest.iter().map(|&i| (values[i] - process.mean) / process.deviation));
         let weights = factor(&kept, &process.lengths, process.variances).unwrap().solve(&known);
         let without = Process { weights: weights.iter().copied().collect(), ..process };

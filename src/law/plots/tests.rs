@@ -1,5 +1,6 @@
 use super::*;
 use crate::law::formulas::tests::elastic_sample;
+use crate::law::variables::Variables;
 
 /// Pictures of elastic cases alone: no Lambda, no fall, and nothing that stops.
 #[test]

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::analytical::ElasticSphere;
 use crate::case::{Case, Material, Opponent};
 use crate::law::variables::yield_lambda;
-use crate::material::{Hardening, MaterialError};
+use crate::material::{FlowStress, MaterialError};
 
 /// What the sphere of a table meets. Its radius and its material are in the table's case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -109,7 +109,7 @@ pub fn first_yield(case: &Case) -> Result<Option<f64>, MaterialError> {
     let mut first: Option<f64> = None;
     for material in bodies(case) {
         let hardening = material.hardening.law(material.youngs_modulus)?;
-        if matches!(hardening, Hardening::Elastic) {
+        if matches!(hardening, FlowStress::Elastic) {
             continue;
         }
         let a = yield_lambda(material.poissons_ratio) * hardening.flow_stress(0.0) * sphere.radius / sphere.effective_modulus();

@@ -2,18 +2,19 @@
 
 use std::path::Path;
 
-use super::against::first_yield;
-use super::measure::{Measured, Missing, Study, measured};
+use super::against::{Against, equivalent, first_yield};
+use super::cases::case_of;
+use super::checked::check_levels;
+use super::level::{BACKBONE, Level, columns_of, level_of};
+use super::measure::{Measured, Missing, Study, measured, unloading_radius};
 use super::spline::{Spline, smooth};
-use super::{
-    Against, BACKBONE, DepthErrors, FORMAT, Level, Tabulated, VERSION, check_levels, columns_of, equivalent, level_of, straight,
-};
+use super::tabulated::{DepthErrors, FORMAT, Tabulated, VERSION, straight};
 use crate::analytical::cattaneo_mindlin::{self, CattaneoMindlin};
 use crate::analytical::{ElasticSphere, hertz};
-use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
+use crate::case::{Case, Friction};
 use crate::contact_law::KEPT;
 use crate::contact_law::path::drive;
-use crate::contact_law::{Centres, POINTS, measured_slope, unloading_exponent};
+use crate::contact_law::{Centres, POINTS, measured_slope};
 use crate::law::LawError;
 use crate::law::range::Interval;
 use crate::output::SLIP_DISPLACEMENT_RATIO;
@@ -31,8 +32,6 @@ const RATIO: f64 = 2.2;
 const FEWEST: usize = 5;
 /// The curves of the shear end at so many times the displacement at which F_T/F_N is 0.99 mu.
 pub(super) const LENGTH: f64 = 2.0;
-/// Share of F_N that the release at the end leaves.
-const LEFT: f64 = 0.5;
 /// F_T/F_N there over mu.
 pub(super) const NEARLY_SLIPPING: f64 = SLIP_DISPLACEMENT_RATIO;
 /// A depth nearer than this share of its size to first yield needs no Hertz contact below it.
@@ -79,25 +78,6 @@ pub fn depths(case: &Case) -> Result<Vec<f64>, LawError> {
     let count = (((deepest / first).ln() / RATIO.ln()).ceil() as usize + 1).max(FEWEST);
     let last = 2 * count - 2;
     Ok((0..=last).map(|i| first * (deepest / first).powf(i as f64 / last as f64)).collect())
-}
-
-/// The case of the study at one of its depths: pressed, sheared to full slip and back, and released
-/// by half; on so many elements along the contact radius and twice as many at the surface, with a
-/// companion, so that its curves are those of the limit of fine meshes.
-pub fn case_of(case: &Case, elements: usize) -> Case {
-    let mut case = case.clone();
-    case.mesh = case.mesh.refined(elements);
-    case.mesh.contact_radius = None;
-    case.solver.error_estimate = true;
-    case.output.fields = crate::case::Fields::None;
-    case.output.plots = false;
-    case.path = vec![Segment::Indentation { indentation: 0.01 * case.effective_radius() }];
-    if case.contact.friction != Friction::Coefficient(0.0) {
-        let shear = |shear| Segment::Shear { shear, hold: Hold::Indentation };
-        case.path.extend([shear(ShearTarget::FullSlip), shear(ShearTarget::Displacement(0.0))]);
-    }
-    case.path.push(Segment::Release { share: LEFT });
-    case
 }
 
 /// delta_T over h of the oblique press that tells how the contact yields under F_T. `None` where
@@ -152,6 +132,22 @@ pub fn build(dir: &Path, case: &Case, elements: usize) -> Result<Built, LawError
         level.yield_coefficient = straight(&yielding, level.h.ln());
     }
     Ok(Built { table, coarse, measured: all, missing })
+}
+
+impl Tabulated {
+    /// The table of levels that come from elsewhere than from simulated depths of `case`.
+    ///
+    /// # Errors
+    /// A hardening law whose numbers make no law; [`LawError::NoTable`] for levels that are none.
+    pub(in crate::law) fn interpolated(case: &Case, levels: Vec<Level>, elements: usize) -> Result<Self, LawError> {
+        of_levels(case.scaled().0, levels, elements)
+    }
+
+    /// The table of two bodies that are alike as that of an equal pair, which `case` is of.
+    pub(in crate::law) fn of_an_equal_pair(self, case: &Case) -> Self {
+        let case = case_of(&case.scaled().0, self.elements_per_contact_radius);
+        Self { body: Against::of(&case), frame: Centres::of(&case).frame(), case: case.to_toml(), ..self }
+    }
 }
 
 pub(super) fn table(case: &Case, depths: &[Measured], elements: usize) -> Result<Tabulated, LawError> {
@@ -294,23 +290,6 @@ pub fn backbone_of(curve: impl Iterator<Item = [f64; 2]>, way: f64, stiffness: f
         }
     }
     [best[1], best[2]]
-}
-
-/// The radius a with which F_N = F (e/D)^gamma, D = gamma F/(2 E* a), takes the simulated way from
-/// the first force F of the release to the last.
-pub fn unloading_radius(sphere: &ElasticSphere, one: &Measured) -> f64 {
-    let (Some(from), Some(to)) = (one.release.first(), one.release.last()) else { return one.a0 };
-    let way = from[0] - to[0];
-    if !(way > 0.0 && from[1] > to[1] && to[1] > 0.0) {
-        return one.a0;
-    }
-    let mut a = one.a0;
-    for _ in 0..50 {
-        let gamma = unloading_exponent(sphere.radius, sphere.effective_modulus(), a, one.f_n0);
-        let depth = way / (1.0 - (to[1] / from[1]).powf(1.0 / gamma));
-        a = gamma * from[1] / (2.0 * sphere.effective_modulus() * depth);
-    }
-    a
 }
 
 /// Share of the exponent's excess over 1 that a reversal has which is not the first: then it turns

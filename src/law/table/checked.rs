@@ -1,7 +1,8 @@
 //! What a table has to be before its curves are drawn through its levels.
 
-use super::build::case_of;
-use super::{FORMAT, Level, Tabulated, VERSION, differ, frame_of_the_centres};
+use super::cases::case_of;
+use super::level::Level;
+use super::tabulated::{FORMAT, Tabulated, VERSION, differ, frame_of_the_centres};
 use crate::case::{Case, Friction};
 use crate::contact_law::{Centres, POINTS};
 use crate::law::bounds::{Bounds, Checked, TOLD};

@@ -4,7 +4,6 @@
 use std::path::Path;
 
 use super::against::equivalent;
-use super::build::unloading_radius;
 use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Segment};
 use crate::contact_law::{Centres, unloading_exponent};
@@ -183,4 +182,21 @@ pub fn measured(dir: &Path) -> Result<Study, LawError> {
     }
     all.sort_by(|a, b| a.h.total_cmp(&b.h));
     Ok(Study { depths: all, yielding: oblique, missing })
+}
+
+/// The radius a with which F_N = F (e/D)^gamma, D = gamma F/(2 E* a), takes the simulated way from
+/// the first force F of the release to the last.
+pub fn unloading_radius(sphere: &ElasticSphere, one: &Measured) -> f64 {
+    let (Some(from), Some(to)) = (one.release.first(), one.release.last()) else { return one.a0 };
+    let way = from[0] - to[0];
+    if !(way > 0.0 && from[1] > to[1] && to[1] > 0.0) {
+        return one.a0;
+    }
+    let mut a = one.a0;
+    for _ in 0..50 {
+        let gamma = unloading_exponent(sphere.radius, sphere.effective_modulus(), a, one.f_n0);
+        let depth = way / (1.0 - (to[1] / from[1]).powf(1.0 / gamma));
+        a = gamma * from[1] / (2.0 * sphere.effective_modulus() * depth);
+    }
+    a
 }

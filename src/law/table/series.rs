@@ -310,7 +310,7 @@ impl Limit {
 }
 
 /// The two bodies at an indentation.
-struct Series<'a> {
+struct PressedPair<'a> {
     bodies: &'a [Body; 2],
     pressed: [Pressed; 2],
     friction: f64,
@@ -319,7 +319,7 @@ struct Series<'a> {
     alike: bool,
 }
 
-impl<'a> Series<'a> {
+impl<'a> PressedPair<'a> {
     /// Presses the bodies together by `h`, the radii being shared out of `radius`, R*.
     fn new(bodies: &'a [Body; 2], radius: f64, friction: f64, h: f64) -> Self {
         let alike = bodies[0].like(&bodies[1]);
@@ -448,7 +448,7 @@ impl<'a> Series<'a> {
 
 impl Level {
     /// The same shear in units of what another series has when it is pressed.
-    fn pressed_as(self, series: &Series<'_>) -> Self {
+    fn pressed_as(self, series: &PressedPair<'_>) -> Self {
         let (f_n0, a0) = (series.pressed[0].force, mean_radius(&series.pressed));
         let wider = a0 / self.a0;
         Self {
@@ -520,14 +520,14 @@ pub fn compose_from(case: &Case, tables: [&Tabulated; 2], for_shear: [&Tabulated
     let radius = scaled.effective_radius();
     let sphere = equivalent(&scaled);
     let level = |h: f64| {
-        let series = Series::new(&bodies, radius, friction, h);
+        let series = PressedPair::new(&bodies, radius, friction, h);
         for (i, body) in bodies.iter().enumerate() {
             let place = series.pressed[i].h / (body.share * series.pressed[i].radius);
             if place > body.range.to * (1.0 + 1e-6) {
                 return Err(LawError::Shallow { body: NAMES[i], has: body.range.to, needs: place });
             }
         }
-        Ok(Series::new(&sheared, radius, friction, h).level(&sphere).pressed_as(&series))
+        Ok(PressedPair::new(&sheared, radius, friction, h).level(&sphere).pressed_as(&series))
     };
     // All of them, so that the error does not depend on which is the first to be done.
     let levels: Vec<Result<Level, LawError>> = depths(case)?.into_par_iter().map(level).collect();
@@ -541,7 +541,7 @@ pub fn compose_from(case: &Case, tables: [&Tabulated; 2], for_shear: [&Tabulated
         body: Against::of(&scaled),
         frame: Centres::of(&scaled).frame(),
         program: format!("asperity {}, in series from the tables of its two bodies", env!("CARGO_PKG_VERSION")),
-        case: super::build::case_of(&scaled, elements[0].min(elements[1])).to_toml(),
+        case: super::cases::case_of(&scaled, elements[0].min(elements[1])).to_toml(),
         range,
         elements_per_contact_radius: elements[0].min(elements[1]),
         levels,

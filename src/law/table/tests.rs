@@ -1,8 +1,12 @@
 use super::build::table;
 use super::measure::{Measured, yielding};
+use super::tabulated::straight;
 use super::*;
 use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
+use crate::case::{self, Case, Friction, Opponent};
+use crate::contact_law::Centres;
 use crate::contact_law::path::{drive, follow};
+use crate::law::LawError;
 use crate::law::data::Point;
 use crate::law::file::LawFile;
 use crate::output::StepRecord;

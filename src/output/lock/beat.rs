@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::Duration;
 
-use super::{identity, open};
+use super::file::{identity, open};
 
 /// Time between two touches.
 const BEAT: Duration = Duration::from_secs(10);

@@ -6,8 +6,8 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use super::file::same_file;
 use super::holder::{GONE, Holder, is_running};
-use super::same_file;
 
 /// A new file with its text in it, and locked.
 pub struct Draft {

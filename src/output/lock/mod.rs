@@ -9,11 +9,12 @@
 
 mod beat;
 mod draft;
+mod file;
 mod holder;
 mod task;
 
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, ErrorKind};
+use std::fs::{File, TryLockError};
+use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, SystemTime};
@@ -21,9 +22,11 @@ use std::time::{Duration, SystemTime};
 use super::OutputError;
 use beat::Own;
 use draft::{Draft, Named};
+use file::open;
 use holder::{Holder, left};
 
 pub(crate) use draft::is_left;
+pub(super) use file::same_file;
 pub use task::{TaskLock, is_study_lock};
 
 /// Name of the file, in the directory that is written to. It is there only while somebody writes.
@@ -145,43 +148,10 @@ fn state(file: &File, holder: &Holder, now: SystemTime) -> State {
     }
 }
 
-/// Opens the file, but never follows a link to somebody else's.
-fn open(path: &Path) -> io::Result<File> {
-    let mut options = OpenOptions::new();
-    options.read(true).write(true);
-    #[cfg(unix)]
-    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, rustix::fs::OFlags::NOFOLLOW.bits() as i32);
-    options.open(path)
-}
-
-/// Whether an open file still is what stands under the name.
-#[cfg(unix)]
-pub(super) fn same_file(file: &File, path: &Path) -> bool {
-    let ours = identity(file.metadata());
-    ours.is_some() && ours == identity(fs::metadata(path))
-}
-
-/// Whether something stands under the name: an open file cannot be removed here.
-#[cfg(not(unix))]
-pub(super) fn same_file(_: &File, path: &Path) -> bool {
-    path.exists()
-}
-
-/// Device and number of a file.
-#[cfg(unix)]
-fn identity(found: io::Result<fs::Metadata>) -> Option<(u64, u64)> {
-    use std::os::unix::fs::MetadataExt;
-    found.map(|found| (found.dev(), found.ino())).ok()
-}
-
-#[cfg(not(unix))]
-fn identity(found: io::Result<fs::Metadata>) -> Option<(u64, u64)> {
-    found.ok().map(|_| (0, 0))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs::{self, OpenOptions};
     use std::sync::Mutex;
 
     #[test]

@@ -9,8 +9,9 @@ use std::time::{Duration, SystemTime};
 
 use super::beat::{self, Own};
 use super::draft::{Draft, is_left, random};
+use super::file::{open, same_file};
 use super::holder::{Holder, age};
-use super::{State, open, same_file, state};
+use super::{State, state};
 use crate::output::{OutputError, draft_of};
 
 /// How the names of the files begin of those who compute a study in a directory.

@@ -121,7 +121,7 @@ pub struct NotFinite(String);
 const FONT: &str = "sans-serif";
 
 /// A place on a picture.
-pub type Place = (f64, f64);
+pub type Pixel = (f64, f64);
 
 /// A picture, or a panel of one with places of its own.
 #[derive(Clone, Debug)]
@@ -162,7 +162,7 @@ impl Canvas {
     }
 
     /// A panel on the same picture.
-    pub fn panel(&self, (left, top): Place, (width, height): (f64, f64)) -> Self {
+    pub fn panel(&self, (left, top): Pixel, (width, height): (f64, f64)) -> Self {
         Self { svg: self.svg.clone(), left: self.left + left, top: self.top + top, width, height, untitled: self.untitled }
     }
 
@@ -173,7 +173,7 @@ impl Canvas {
     }
 
     /// A line through points.
-    pub fn line(&self, points: &[Place], stroke: Stroke) -> Drawn {
+    pub fn line(&self, points: &[Pixel], stroke: Stroke) -> Drawn {
         let mut dashes = String::new();
         if let Some([dash, gap]) = stroke.dashes {
             dashes = format!(" stroke-dasharray=\"{},{}\"", number(dash), number(gap));
@@ -188,12 +188,12 @@ impl Canvas {
     }
 
     /// A polygon.
-    pub fn polygon(&self, points: &[Place], paint: Paint) -> Drawn {
+    pub fn polygon(&self, points: &[Pixel], paint: Paint) -> Drawn {
         self.add(&format!("<polygon {} points=\"{}\"/>", attributes(paint), self.places(points)))
     }
 
     /// The area between closed lines, holes being those that lie within others.
-    pub fn area(&self, loops: &[Vec<Place>], paint: Paint) -> Drawn {
+    pub fn area(&self, loops: &[Vec<Pixel>], paint: Paint) -> Drawn {
         let mut path = String::new();
         for points in loops.iter().filter(|points| points.len() > 2) {
             // Writing to a String cannot fail.
@@ -208,7 +208,7 @@ impl Canvas {
 
     /// A rectangle whose colour goes over from one side to the other: `colour` of 0 to 1, from the
     /// left, or from the foot if `upwards`.
-    pub fn ramp(&self, [a, b]: [Place; 2], upwards: bool, colour: impl Fn(f64) -> Colour) -> Drawn {
+    pub fn ramp(&self, [a, b]: [Pixel; 2], upwards: bool, colour: impl Fn(f64) -> Colour) -> Drawn {
         const STOPS: u32 = 32;
         let mut stops = String::new();
         for i in 0..=STOPS {
@@ -236,7 +236,7 @@ impl Canvas {
     }
 
     /// A rectangle between two opposite corners.
-    pub fn rectangle(&self, [a, b]: [Place; 2], paint: Paint) -> Drawn {
+    pub fn rectangle(&self, [a, b]: [Pixel; 2], paint: Paint) -> Drawn {
         let (x, y) = (self.left + a.0.min(b.0), self.top + a.1.min(b.1));
         self.add(&format!(
             "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" {}/>",
@@ -249,13 +249,13 @@ impl Canvas {
     }
 
     /// A circle.
-    pub fn circle(&self, (x, y): Place, radius: f64, paint: Paint) -> Drawn {
+    pub fn circle(&self, (x, y): Pixel, radius: f64, paint: Paint) -> Drawn {
         let (x, y) = (number(self.left + x), number(self.top + y));
         self.add(&format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{}\" {}/>", number(radius), attributes(paint)))
     }
 
     /// A text, its subscripts and superscripts set (see `text.rs`).
-    pub fn text(&self, text: &str, (x, y): Place, ink: impl Into<Ink>, writing: Writing) -> Drawn {
+    pub fn text(&self, text: &str, (x, y): Pixel, ink: impl Into<Ink>, writing: Writing) -> Drawn {
         let Ink { colour, opacity } = ink.into();
         let (x, y) = (number(self.left + x), number(self.top + y));
         let anchor = match writing.anchor {
@@ -279,7 +279,7 @@ impl Canvas {
         Ok(())
     }
 
-    fn places(&self, points: &[Place]) -> String {
+    fn places(&self, points: &[Pixel]) -> String {
         let mut text = String::new();
         for (i, (x, y)) in points.iter().enumerate() {
             // Writing to a String cannot fail.

@@ -1,7 +1,7 @@
 //! A diagram: axes (linear or logarithmic), grid, curves and marks cut at the frame, a legend in
 //! lines above it, a colour bar beside it.
 
-use super::canvas::{Anchor, Canvas, Colour, Drawn, Ink, Paint, Place, Stroke, Writing};
+use super::canvas::{Anchor, Canvas, Colour, Drawn, Ink, Paint, Pixel, Stroke, Writing};
 use super::field::clipped;
 use super::style::{FAINT, INK, PALE, WHITE, tick, viridis};
 use super::text::text_width;
@@ -211,7 +211,7 @@ pub struct Chart {
 }
 
 /// The frame of the diagram in pixels and the way there.
-struct Frame<'a> {
+struct PlotArea<'a> {
     chart: &'a Chart,
     left: f64,
     right: f64,
@@ -219,7 +219,7 @@ struct Frame<'a> {
     bottom: f64,
 }
 
-impl Frame<'_> {
+impl PlotArea<'_> {
     fn x(&self, value: f64) -> f64 {
         self.left + self.chart.x.place(value) * (self.right - self.left)
     }
@@ -263,14 +263,14 @@ impl Frame<'_> {
     }
 
     /// The part of a filled area inside of the frame, in pixels.
-    fn area(&self, points: &[(f64, f64)]) -> Vec<Place> {
+    fn area(&self, points: &[(f64, f64)]) -> Vec<Pixel> {
         let places = points.iter().map(|&(x, y)| (self.x(x), self.y(y))).filter(|(x, y)| x.is_finite() && y.is_finite());
-        clipped(&places.collect::<Vec<Place>>(), [(self.left, self.top), (self.right, self.bottom)])
+        clipped(&places.collect::<Vec<Pixel>>(), [(self.left, self.top), (self.right, self.bottom)])
     }
 
     /// The pieces of a curve inside of the frame, in pixels.
-    fn pieces(&self, points: &[(f64, f64)]) -> Vec<Vec<Place>> {
-        let mut pieces: Vec<Vec<Place>> = Vec::new();
+    fn pieces(&self, points: &[(f64, f64)]) -> Vec<Vec<Pixel>> {
+        let mut pieces: Vec<Vec<Pixel>> = Vec::new();
         let mut open = false;
         for pair in points.windows(2) {
             let [from, to] = [pair[0], pair[1]].map(|(x, y)| (self.x(x), self.y(y)));
@@ -297,9 +297,9 @@ fn finite(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
 }
 
 /// Without points that no eye could tell from the one before; the last one stays.
-fn thinned(piece: &[Place]) -> Vec<Place> {
+fn thinned(piece: &[Pixel]) -> Vec<Pixel> {
     const CLOSE: f64 = 0.5;
-    let mut kept: Vec<Place> = Vec::new();
+    let mut kept: Vec<Pixel> = Vec::new();
     for (i, point) in piece.iter().enumerate() {
         let near = kept.last().is_some_and(|last| (point.0 - last.0).abs().max((point.1 - last.1).abs()) < CLOSE);
         if !near || i + 1 == piece.len() {
@@ -309,7 +309,7 @@ fn thinned(piece: &[Place]) -> Vec<Place> {
     kept
 }
 
-fn draw_line(root: &Canvas, line: Line, ink: Ink, piece: &[Place]) -> Drawn {
+fn draw_line(root: &Canvas, line: Line, ink: Ink, piece: &[Pixel]) -> Drawn {
     root.line(
         piece,
         match line {
@@ -320,10 +320,10 @@ fn draw_line(root: &Canvas, line: Line, ink: Ink, piece: &[Place]) -> Drawn {
 }
 
 /// An arrow head in the middle of a curve, along it; none on a short one.
-fn draw_arrow(root: &Canvas, ink: Ink, pieces: &[Vec<Place>]) -> Drawn {
+fn draw_arrow(root: &Canvas, ink: Ink, pieces: &[Vec<Pixel>]) -> Drawn {
     const SHORTEST: f64 = 24.0;
-    let segments: Vec<[Place; 2]> = pieces.iter().flat_map(|piece| piece.windows(2).map(|pair| [pair[0], pair[1]])).collect();
-    let length = |[from, to]: &[Place; 2]| (to.0 - from.0).hypot(to.1 - from.1);
+    let segments: Vec<[Pixel; 2]> = pieces.iter().flat_map(|piece| piece.windows(2).map(|pair| [pair[0], pair[1]])).collect();
+    let length = |[from, to]: &[Pixel; 2]| (to.0 - from.0).hypot(to.1 - from.1);
     let whole: f64 = segments.iter().map(length).sum();
     if whole < SHORTEST {
         return Ok(());
@@ -343,7 +343,7 @@ fn draw_arrow(root: &Canvas, ink: Ink, pieces: &[Vec<Place>]) -> Drawn {
     Ok(())
 }
 
-fn draw_mark(root: &Canvas, (mark, r): (Mark, f64), ink: Ink, (x, y): Place) -> Drawn {
+fn draw_mark(root: &Canvas, (mark, r): (Mark, f64), ink: Ink, (x, y): Pixel) -> Drawn {
     let fill = Paint::fill(ink);
     match mark {
         Mark::Dot => root.circle((x, y), r, fill),
@@ -413,13 +413,13 @@ pub fn draw_chart(root: &Canvas, chart: &Chart) -> Drawn {
     let y_ticks = chart.y.ticks((high / 38.0).clamp(2.0, MOST_TICKS));
     let widest = y_ticks.iter().flat_map(|tick| &tick.1).map(|label| text_width(label, TICK_SIZE)).fold(0.0, f64::max);
     let (left, right) = (38.0 + widest.max(24.0), root.width - if chart.bar.is_some() { 84.0 } else { 22.0 });
-    let frame = Frame { chart, left, right, top: 0.0, bottom: root.height - 58.0 };
+    let frame = PlotArea { chart, left, right, top: 0.0, bottom: root.height - 58.0 };
     // What is off the scale has no entry. The height of the frame does not matter for that.
     let shown: Vec<Series> = chart.series.iter().filter(|series| frame.shows(series)).cloned().collect();
     let (legend, lines) = legend_places(&shown, right - left);
     // The first line below the title, or below the edge.
     let first = if root.untitled || chart.title.is_empty() { 48.0 - TITLE } else { 48.0 };
-    let frame = Frame { top: first - 2.0 + LEGEND_LINE * lines as f64, ..frame };
+    let frame = PlotArea { top: first - 2.0 + LEGEND_LINE * lines as f64, ..frame };
     let x_ticks = chart.x.ticks(((right - left) / 70.0).clamp(2.0, MOST_TICKS));
 
     if !root.untitled {
@@ -445,30 +445,7 @@ pub fn draw_chart(root: &Canvas, chart: &Chart) -> Drawn {
             root.text(&label, (frame.left - 9.0, y), INK, Writing::new(TICK_SIZE, Anchor::End))?;
         }
     }
-    for series in &chart.series {
-        let ink = series.colour.mix(series.opacity);
-        let finite = finite(&series.points);
-        if series.filled {
-            let area = frame.area(&finite);
-            if area.len() > 2 {
-                root.polygon(&area, Paint::fill(ink))?;
-            }
-        }
-        if let Some(line) = series.line {
-            let pieces = frame.pieces(&finite);
-            for piece in &pieces {
-                draw_line(root, line, ink, piece)?;
-            }
-            if series.arrow {
-                draw_arrow(root, ink, &pieces)?;
-            }
-        }
-        if let Some(mark) = series.mark {
-            for at in finite.iter().map(|&(x, y)| (frame.x(x), frame.y(y))).filter(|&at| frame.holds(at)) {
-                draw_mark(root, mark, ink, at)?;
-            }
-        }
-    }
+    chart.series.iter().try_for_each(|series| draw_series(root, &frame, series))?;
     root.rectangle([(frame.left, frame.top), (frame.right, frame.bottom)], Paint::outline(INK, 1.0))?;
 
     let middle = (0.5 * (frame.left + frame.right), 0.5 * (frame.top + frame.bottom));
@@ -480,6 +457,32 @@ pub fn draw_chart(root: &Canvas, chart: &Chart) -> Drawn {
         Some(bar) => draw_bar(root, bar, frame.right + 20.0, [frame.top + 24.0, frame.bottom]),
         None => Ok(()),
     }
+}
+
+fn draw_series(root: &Canvas, frame: &PlotArea, series: &Series) -> Drawn {
+    let ink = series.colour.mix(series.opacity);
+    let finite = finite(&series.points);
+    if series.filled {
+        let area = frame.area(&finite);
+        if area.len() > 2 {
+            root.polygon(&area, Paint::fill(ink))?;
+        }
+    }
+    if let Some(line) = series.line {
+        let pieces = frame.pieces(&finite);
+        for piece in &pieces {
+            draw_line(root, line, ink, piece)?;
+        }
+        if series.arrow {
+            draw_arrow(root, ink, &pieces)?;
+        }
+    }
+    if let Some(mark) = series.mark {
+        for at in finite.iter().map(|&(x, y)| (frame.x(x), frame.y(y))).filter(|&at| frame.holds(at)) {
+            draw_mark(root, mark, ink, at)?;
+        }
+    }
+    Ok(())
 }
 
 /// Draws several diagrams in panels of equal size, row by row. Their titles tell them apart, and
@@ -525,14 +528,14 @@ mod tests {
     fn curves_end_at_the_frame() {
         let (x, y) = (Axis::linear("", 0.0, 1.0), Axis::linear("", 0.0, 1.0));
         let chart = Chart { title: String::new(), x, y, series: Vec::new(), bar: None };
-        let frame = Frame { chart: &chart, left: 0.0, right: 100.0, top: 0.0, bottom: 100.0 };
+        let frame = PlotArea { chart: &chart, left: 0.0, right: 100.0, top: 0.0, bottom: 100.0 };
         // In, out at the top, and in again.
         let pieces = frame.pieces(&[(0.0, 0.0), (0.5, 1.0), (0.6, 2.0), (0.9, 2.0), (1.0, 0.0)]);
         assert_eq!(pieces, [vec![(0.0, 100.0), (50.0, 0.0)], vec![(95.0, 0.0), (100.0, 100.0)]]);
         assert!(frame.pieces(&[(-1.0, 0.5), (-0.5, 0.7)]).is_empty());
         // A logarithm of zero is left out.
         let chart = Chart { x: Axis::logarithmic("", 1.0, 10.0), ..chart.clone() };
-        let frame = Frame { chart: &chart, left: 0.0, right: 100.0, top: 0.0, bottom: 100.0 };
+        let frame = PlotArea { chart: &chart, left: 0.0, right: 100.0, top: 0.0, bottom: 100.0 };
         assert_eq!(frame.pieces(&[(0.0, 0.5), (1.0, 0.5), (10.0, 0.5)]), [vec![(0.0, 50.0), (100.0, 50.0)]]);
     }
 

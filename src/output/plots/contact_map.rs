@@ -4,7 +4,7 @@ use super::super::tables::SlipPanel;
 use super::super::{ContactPoint, ContactStatus, Half, OutputError};
 use super::View;
 use super::axes::{Dimension, Shown};
-use super::canvas::{Anchor, Canvas, Colour, Drawn, NotFinite, Paint, Place, Stroke, Writing};
+use super::canvas::{Anchor, Canvas, Colour, Drawn, NotFinite, Paint, Pixel, Stroke, Writing};
 use super::chart::nice_step;
 use super::field::{Field, clipped};
 use super::style::{BLUE, INK, ORANGE, Picture, rounded, tick, viridis};
@@ -190,7 +190,7 @@ impl Map<'_> {
         0.5 * self.square.side / self.window.reach
     }
 
-    fn pixel(&self, x: f64, y: f64) -> Place {
+    fn pixel(&self, x: f64, y: f64) -> Pixel {
         let half = 0.5 * self.square.side;
         (self.square.left + half + (x - self.window.centre) * self.scale(), self.square.top + half - y * self.scale())
     }
@@ -207,7 +207,7 @@ impl Map<'_> {
                 .collect();
             let field = Field::new(own.iter().map(|point| self.pixel(point.current_x, point.current_y)).collect());
             let region = |values: &[f64], level: f64, ink: Paint| {
-                let inside = |points: &Vec<Place>| clipped(points, [(left, top), (left + side, top + side)]);
+                let inside = |points: &Vec<Pixel>| clipped(points, [(left, top), (left + side, top + side)]);
                 area.area(&field.at_least(values, level).iter().map(inside).collect::<Vec<_>>(), ink)
             };
             // What is open has no value: the border is halfway to it.
@@ -274,7 +274,7 @@ fn text(size: f64) -> Writing {
 }
 
 /// The colours of the status in a line, with the number of points of each if there are points.
-fn status_names(root: &Canvas, points: Option<&[ContactPoint]>, (left, y): Place) -> Drawn {
+fn status_names(root: &Canvas, points: Option<&[ContactPoint]>, (left, y): Pixel) -> Drawn {
     let names =
         [(ContactStatus::Stick, BLUE, "stick"), (ContactStatus::Slip, ORANGE, "slip"), (ContactStatus::Open, OPEN, "open")];
     let mut x = left;
@@ -289,7 +289,7 @@ fn status_names(root: &Canvas, points: Option<&[ContactPoint]>, (left, y): Place
 }
 
 /// The colours of the pressure with their numbers and their name below.
-fn pressure_bar(root: &Canvas, scales: &Scales, (left, top): Place, length: f64) -> Drawn {
+fn pressure_bar(root: &Canvas, scales: &Scales, (left, top): Pixel, length: f64) -> Drawn {
     if scales.highest <= 0.0 {
         return Ok(());
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use delaunator::{Point, triangulate};
 
-use super::canvas::Place;
+use super::canvas::Pixel;
 
 /// A corner of an area: point `i` as (i, i), or the place between points i < j as (i, j).
 type Corner = (usize, usize);
@@ -13,13 +13,13 @@ type Corner = (usize, usize);
 /// Points and the triangles between them.
 #[derive(Clone, Debug)]
 pub struct Field {
-    places: Vec<Place>,
+    places: Vec<Pixel>,
     triangles: Vec<[usize; 3]>,
 }
 
 impl Field {
     /// Of points in the plane; without triangles if there are none.
-    pub fn new(places: Vec<Place>) -> Self {
+    pub fn new(places: Vec<Pixel>) -> Self {
         let points: Vec<Point> = places.iter().map(|&(x, y)| Point { x, y }).collect();
         let corners = if points.len() < 3 { Vec::new() } else { triangulate(&points).triangles };
         let triangles = corners.chunks_exact(3).map(|three| [three[0], three[1], three[2]]).collect();
@@ -29,7 +29,7 @@ impl Field {
     /// The borders of where a quantity is at least `level`. Between a point above it and a point
     /// below it the border is where the quantity, linear between the two, has that level; towards a
     /// point without a value (not a number) it is halfway.
-    pub fn at_least(&self, values: &[f64], level: f64) -> Vec<Vec<Place>> {
+    pub fn at_least(&self, values: &[f64], level: f64) -> Vec<Vec<Pixel>> {
         let above = |i: usize| values[i] >= level;
         // Each triangle's part of the area, counterclockwise or clockwise as all of them; where two
         // parts meet, their edges cancel.
@@ -65,7 +65,7 @@ impl Field {
         loops
     }
 
-    fn place(&self, values: &[f64], level: f64, (i, j): Corner) -> Place {
+    fn place(&self, values: &[f64], level: f64, (i, j): Corner) -> Pixel {
         if i == j {
             return self.places[i];
         }
@@ -77,12 +77,12 @@ impl Field {
 }
 
 /// The part of a closed line inside of a rectangle (Sutherland & Hodgman 1974).
-pub fn clipped(points: &[Place], [low, high]: [Place; 2]) -> Vec<Place> {
+pub fn clipped(points: &[Pixel], [low, high]: [Pixel; 2]) -> Vec<Pixel> {
     let mut points = points.to_vec();
-    type Side = (fn(Place) -> f64, f64, f64);
+    type Side = (fn(Pixel) -> f64, f64, f64);
     let sides: [Side; 4] = [(|p| p.0, low.0, 1.0), (|p| p.0, high.0, -1.0), (|p| p.1, low.1, 1.0), (|p| p.1, high.1, -1.0)];
     for (of, limit, sign) in sides {
-        let inside = |p: Place| sign * (of(p) - limit);
+        let inside = |p: Pixel| sign * (of(p) - limit);
         let mut kept = Vec::with_capacity(points.len());
         for (i, &to) in points.iter().enumerate() {
             let from = points[(i + points.len() - 1) % points.len()];
@@ -104,13 +104,13 @@ pub fn clipped(points: &[Place], [low, high]: [Place; 2]) -> Vec<Place> {
 mod tests {
     use super::*;
 
-    fn area(points: &[Place]) -> f64 {
-        let cross = |(a, b): (&Place, &Place)| a.0 * b.1 - b.0 * a.1;
+    fn area(points: &[Pixel]) -> f64 {
+        let cross = |(a, b): (&Pixel, &Pixel)| a.0 * b.1 - b.0 * a.1;
         0.5 * points.iter().zip(points.iter().cycle().skip(1)).map(cross).sum::<f64>()
     }
 
     /// A grid of n by n points over the unit square.
-    fn grid(n: usize) -> Vec<Place> {
+    fn grid(n: usize) -> Vec<Pixel> {
         let at = |i: usize| i as f64 / (n - 1) as f64;
         (0..n * n).map(|i| (at(i % n), at(i / n))).collect()
     }

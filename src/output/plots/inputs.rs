@@ -1,17 +1,30 @@
 //! What the pictures of a case show beside its curves.
 
 use super::super::units::coefficient;
-use super::PlotInputs;
 use crate::analytical::ElasticSphere;
-use crate::analytical::olsson_larsson::Hardening;
+use crate::analytical::olsson_larsson::OlssonLarssonHardening;
 use crate::case::{self, Case};
+
+/// What the plots show beside the computed curves, in the user's units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlotInputs {
+    /// The sphere, for Hertz's curve; against a rigid sphere that of radius R*.
+    pub sphere: ElasticSphere,
+    /// The law for Olsson & Larsson's curve; `None` where theirs has no counterpart.
+    pub hardening: Option<OlssonLarssonHardening>,
+    /// Coulomb's coefficient for the line that F_T/F_N runs up to; `None` for full stick.
+    pub friction: Option<f64>,
+    /// Bodies that deform (see [`crate::case::Case::bodies`]): closed forms are of one of them,
+    /// over a plane.
+    pub bodies: f64,
+}
 
 impl PlotInputs {
     /// Those of a case in the user's units. Olsson & Larsson's laws cover ideal, power (k =
     /// K/sigma_Y, m = 1/n), linear (m = 1) and Hollomon.
     pub fn of(case: &Case) -> Self {
         let material = &case.material;
-        let three = |yield_stress: f64, coefficient: f64, exponent: f64| Hardening::ThreeParameter {
+        let three = |yield_stress: f64, coefficient: f64, exponent: f64| OlssonLarssonHardening::ThreeParameter {
             yield_stress,
             coefficient: coefficient / yield_stress,
             exponent,
@@ -19,13 +32,15 @@ impl PlotInputs {
         let hardening = match material.hardening {
             // Two materials have no law of their own.
             _ if matches!(case.opponent, Some(case::Opponent::Deforming { .. })) => None,
-            case::Hardening::Ideal { yield_stress } => Some(Hardening::Ideal { yield_stress }),
+            case::Hardening::Ideal { yield_stress } => Some(OlssonLarssonHardening::Ideal { yield_stress }),
             case::Hardening::Linear { yield_stress, modulus } => Some(three(yield_stress, modulus, 1.0)),
             case::Hardening::Power { yield_stress, coefficient, exponent } => {
                 Some(three(yield_stress, coefficient, 1.0 / exponent))
             }
-            case::Hardening::Hollomon { coefficient, exponent } => Some(Hardening::TwoParameter { coefficient, exponent }),
-            case::Hardening::Elastic | case::Hardening::Voce { .. } | case::Hardening::Table { .. } => None,
+            case::Hardening::Hollomon { coefficient, exponent } => {
+                Some(OlssonLarssonHardening::TwoParameter { coefficient, exponent })
+            }
+            _ => None,
         };
         Self {
             sphere: ElasticSphere {

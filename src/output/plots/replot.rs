@@ -1,6 +1,7 @@
 //! The pictures of a run made again from what its directory holds.
 
-use super::{PANELS, Picture, PlotInputs, Tables, View, run_pictures, spread};
+use super::run::{PANELS, run_pictures, spread};
+use super::{Picture, PlotInputs, Tables, View};
 use crate::case::Case;
 use crate::output::tables::{shears, split};
 use crate::output::{OutputDirectory, OutputError, StepRecord, read_contact};

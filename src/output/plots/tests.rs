@@ -1,14 +1,17 @@
 use super::super::tables::RUN_PICTURES;
-use super::super::{ContactPoint, ContactStatus, Half};
+use super::super::{ContactPoint, ContactStatus, Half, OutputDirectory, StepRecord};
+use super::axes::Axes;
 use super::*;
+use crate::analytical::ElasticSphere;
 use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
-use crate::analytical::olsson_larsson::OlssonLarsson;
+use crate::analytical::olsson_larsson::{OlssonLarsson, OlssonLarssonHardening};
+use crate::case::PictureFormat;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 const INPUTS: PlotInputs = PlotInputs {
     sphere: ElasticSphere { radius: 1.0, youngs_modulus: 200e3, poissons_ratio: 0.3 },
-    hardening: Some(Hardening::Ideal { yield_stress: 400.0 }),
+    hardening: Some(OlssonLarssonHardening::Ideal { yield_stress: 400.0 }),
     friction: Some(0.3),
     bodies: 1.0,
 };

@@ -64,8 +64,7 @@ impl Drive<'_> {
             Some(settled) => self.take_from_device(settled),
             None => self.take_from_host(&mut report)?,
         };
-        let Taken { energies, outcome, displacement, internal_force, forces, statuses, gaps } = taken;
-        if let Outcome::Invalid(fault) = outcome {
+        if let Outcome::Invalid(fault) = taken.outcome {
             return Ok(Some(fault));
         }
         let (wasted, cutbacks) = (std::mem::take(&mut self.place.wasted), std::mem::take(&mut self.place.cutbacks));
@@ -73,10 +72,52 @@ impl Drive<'_> {
             report.traffic = after - before;
         }
         let h = self.newton.accepted_h();
-        let force: [f64; 3] = std::array::from_fn(|c| forces[..self.mesh.own_contacts()].iter().map(|f| f[c]).sum());
+        let force: [f64; 3] = std::array::from_fn(|c| taken.forces[..self.mesh.own_contacts()].iter().map(|f| f[c]).sum());
         let slaves = self.newton.opponent().contacts(&self.mesh);
-        let count = |s: Status| statuses[slaves.clone()].iter().filter(|status| **status == s).count();
+        let count = |s: Status| taken.statuses[slaves.clone()].iter().filter(|status| **status == s).count();
         let (contact_points, slipping_points) = (count(Status::Stick) + count(Status::Slip), count(Status::Slip));
+        let (energies, copies) = (taken.energies, self.mesh.copies as f64);
+        let friction_work = self.keep(taken);
+        let turned = self.move_plate(target, h);
+        self.state.place_points(&self.mesh);
+        self.state.record = StepRecord {
+            step: before.step + 1,
+            segment: before.segment,
+            newton_iterations: report.iterations.len() + wasted,
+            cutbacks,
+            krylov_iterations: report.krylov(),
+            merit: report.merit,
+            energy_elastic: copies * energies.elastic,
+            work_plastic: copies * energies.plastic,
+            work_friction: before.work_friction + copies * friction_work,
+            contact_points,
+            slipping_points,
+            max_alpha: energies.max_alpha,
+            reach: self.state.reach(),
+            relaxed: usize::from(report.relaxed),
+            landed_again: report.landed_again,
+            work_plastic_opponent: copies * energies.opponent_plastic,
+            k_t: self.place.stiffness.take(),
+            ..self.measured(target, h, turned, force)
+        };
+        self.state.longest_recovery = self.state.longest_recovery.max(self.start().recovery());
+        self.tell_step(&report);
+        if let Some((what, value)) = self.state.record.not_finite() {
+            return Err(SimulationError::NotFinite { step: self.state.record.step, what, value });
+        }
+        if report.relaxed {
+            self.note_relaxed(observer);
+        }
+        self.last_report = report;
+        self.backend.take_notes().iter().for_each(|note| observer.note(note));
+        observer.step(&mut self.view()).map_err(SimulationError::Observer)?;
+        Ok(None)
+    }
+
+    /// The state is that of the end of the step; gives what friction has dissipated in it, in the
+    /// meshed part.
+    fn keep(&mut self, taken: Taken) -> f64 {
+        let Taken { displacement, internal_force, forces, statuses, gaps, .. } = taken;
         let friction_work = self.newton.friction_work(&StepTaken {
             mesh: &self.mesh,
             friction: self.problem.model.friction,
@@ -92,43 +133,30 @@ impl Drive<'_> {
         }
         (self.state.statuses, self.state.gaps) = (statuses, gaps);
         self.newton.committed();
-        let turned = self.move_plate(target, h);
-        self.state.place_points(&self.mesh);
+        friction_work
+    }
+
+    /// What of the record tells of the plate and the contact, from the contact's force on the
+    /// meshed part, after a step to `target` and `h` that has `turned` the plate.
+    fn measured(&mut self, target: &Target, h: f64, turned: [f64; 3], force: [f64; 3]) -> StepRecord {
+        let slaves = self.newton.opponent().contacts(&self.mesh);
         let size = footprint(&self.state.points[slaves.clone()], self.problem.spacing, self.mesh.copies);
         // A slave that is the opponent lies the other way round.
         let side = if slaves.start == 0 { 1.0 } else { -1.0 };
         let shape = self.mesh.couple.as_ref().and_then(|_| bulge(&self.state.points[slaves]));
         let [depth, curvature] = shape.map_or([0.0; 2], |[height, curvature]| [0.0 - side * height, side * curvature]);
-        let copies = self.mesh.copies as f64;
         let Exerted { force: [f_t, f_t_y, f_n], moment: [m_roll_x, m_roll_y, m_twist], work } = self.exerted(force, h, turned);
-        self.state.record = StepRecord {
-            step: before.step + 1,
-            segment: before.segment,
+        StepRecord {
             h,
             delta_t: target.delta_t,
             f_n,
             f_t,
             a: size.radius,
             stick_radius: size.stick_radius,
-            newton_iterations: report.iterations.len() + wasted,
-            cutbacks,
             a_gap: size.radius_gap,
-            krylov_iterations: report.krylov(),
-            merit: report.merit,
             work_external: work,
-            energy_elastic: copies * energies.elastic,
-            work_plastic: copies * energies.plastic,
-            work_friction: before.work_friction + copies * friction_work,
-            contact_points,
-            slipping_points,
-            max_alpha: energies.max_alpha,
-            reach: self.state.reach(),
-            relaxed: usize::from(report.relaxed),
-            landed_again: report.landed_again,
             h_opponent: depth,
-            work_plastic_opponent: copies * energies.opponent_plastic,
             curvature,
-            k_t: self.place.stiffness.take(),
             delta_t_y: target.across,
             f_t_y,
             roll_x: target.angles[0],
@@ -139,24 +167,18 @@ impl Drive<'_> {
             m_roll_y,
             // A run alone knows no limits.
             ..StepRecord::default()
-        };
-        self.state.longest_recovery = self.state.longest_recovery.max(self.start().recovery());
-        self.tell_step(&report);
-        if let Some((what, value)) = self.state.record.not_finite() {
-            return Err(SimulationError::NotFinite { step: self.state.record.step, what, value });
         }
-        if report.relaxed && !self.place.relaxed_told {
-            self.place.relaxed_told = true;
+    }
+
+    /// Tells of the first step of a segment that was accepted with relaxed conditions.
+    fn note_relaxed(&mut self, observer: &mut dyn Observer) {
+        if !std::mem::replace(&mut self.place.relaxed_told, true) {
             let r = &self.state.record;
             observer.note(&format!(
                 "step {} of segment {} was accepted with relaxed conditions; column relaxed of the history tells of it and of any other in this segment",
                 r.step, r.segment
             ));
         }
-        self.last_report = report;
-        self.backend.take_notes().iter().for_each(|note| observer.note(note));
-        observer.step(&mut self.view()).map_err(SimulationError::Observer)?;
-        Ok(None)
     }
 
     /// The plate is where it was to be, and at `h`; gives what it has turned.

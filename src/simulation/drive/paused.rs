@@ -3,7 +3,7 @@
 use super::Drive;
 use super::safe::Safe;
 use crate::compute::{Compute, ComputeError};
-use crate::simulation::checkpoint::{Committed, Place};
+use crate::simulation::checkpoint::{Committed, PathPosition};
 use crate::simulation::problem::Problem;
 use crate::simulation::record::ContactPoint;
 use crate::solver::StepReport;
@@ -14,7 +14,7 @@ pub struct Paused {
     newton: Newton,
     state: Committed,
     safe: Safe,
-    place: Place,
+    place: PathPosition,
     last_report: StepReport,
 }
 

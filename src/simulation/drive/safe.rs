@@ -5,7 +5,8 @@ use std::time::{Duration, Instant};
 
 use crate::compute::ComputeError;
 use crate::simulation::checkpoint::Snapshot;
-use crate::simulation::observer::{Observer, StepView};
+use crate::simulation::drive::{Observer, StepView};
+use crate::simulation::error::ObserverError;
 use crate::simulation::problem::Problem;
 
 /// Time between copies: one takes as long as some steps do.
@@ -69,16 +70,14 @@ impl<'a> Muted<'a> {
     }
 }
 
-type Failed = Box<dyn std::error::Error + Send + Sync>;
-
 impl Observer for Muted<'_> {
-    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError> {
         let step = view.record.0.step;
         self.is_repeating = self.lost.is_some_and(|lost| step < lost.step);
         if self.lost.is_some_and(|lost| step <= lost.step) { Ok(()) } else { self.observer.step(view) }
     }
 
-    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), ObserverError> {
         let was_shown = self.lost.is_some_and(|lost| view.record.0.segment < lost.segment);
         if was_shown { Ok(()) } else { self.observer.segment_end(view) }
     }
@@ -89,7 +88,7 @@ impl Observer for Muted<'_> {
         }
     }
 
-    fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), Failed> {
+    fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), ObserverError> {
         self.observer.starts_over(problem, unknowns)
     }
 

@@ -9,9 +9,10 @@ use crate::compute::linear::{Ended, Side, SideReport, Solved, System};
 use crate::linalg::{BlockMatrix, LinalgError};
 use crate::mesh::Mesh;
 use crate::solver::SolverError;
+use crate::solver::contact_rows::{apply_contact, turn};
 use crate::solver::outcome::{Halt, StepFailure};
 use crate::solver::phases::{Lap, Phase, PhaseTimes};
-use crate::solver::system::{Boundary, Trial, apply_contact, fixed_unknowns, plate_functional, right_hand_side, turn};
+use crate::solver::system::{Boundary, Trial, fixed_unknowns, plate_functional, right_hand_side};
 use crate::solver::systems::Matrix;
 
 /// Share of the forces at the contact to which the response to a unit indentation is solved, which

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::joint::{Bodies, Series};
+use super::joint::{Bodies, SpringsInSeries};
 use crate::contact::couple::CoupleInterface;
 use crate::contact::interface::Symmetry;
 use crate::linalg::LinalgError;
@@ -18,7 +18,7 @@ pub struct TwoBodies {
     /// Which of them is the slave: 0 the sphere, 1 the opponent.
     pub slave: usize,
     /// What they are in series.
-    pub series: Series,
+    pub series: SpringsInSeries,
     /// Radius of the opponent; `None` of a flat.
     pub radius: Option<f64>,
 }
@@ -27,9 +27,14 @@ impl TwoBodies {
     /// A sphere of Young's modulus and radius 1 and an opponent of these. The softer body is the
     /// slave, of equal ones the sphere; if they are `exchanged`, the other one.
     pub fn new(opponent: f64, radius: Option<f64>, exchanged: bool) -> Self {
-        let (slave, series) = if opponent < 1.0 { (1, Series::new(opponent, 1.0)) } else { (0, Series::new(1.0, opponent)) };
+        let (slave, series) =
+            if opponent < 1.0 { (1, SpringsInSeries::new(opponent, 1.0)) } else { (0, SpringsInSeries::new(1.0, opponent)) };
         if exchanged {
-            return Self { slave: 1 - slave, series: Series { master_share: 1.0 - series.master_share, ..series }, radius };
+            return Self {
+                slave: 1 - slave,
+                series: SpringsInSeries { master_share: 1.0 - series.master_share, ..series },
+                radius,
+            };
         }
         Self { slave, series, radius }
     }
@@ -48,7 +53,7 @@ impl Bodies for TwoBodies {
         CoupleInterface::new(mesh, u, self.slave, 1.0 - self.series.master_share)
     }
 
-    fn series(&self) -> Series {
+    fn series(&self) -> SpringsInSeries {
         self.series
     }
 

@@ -40,7 +40,7 @@ pub trait Bodies: Debug + Send + Sync {
     fn interface(&self, mesh: &Mesh, u: &[f64]) -> Self::Interface;
 
     /// Stiffness of the two as springs in series.
-    fn series(&self) -> Series;
+    fn series(&self) -> SpringsInSeries;
 
     /// See [`Opponent::contacts`].
     fn contacts(&self, mesh: &Mesh) -> Range<usize> {
@@ -71,14 +71,14 @@ pub trait Bodies: Debug + Send + Sync {
 
 /// Young's moduli of two bodies as springs in series.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Series {
+pub struct SpringsInSeries {
     /// Modulus of both together, E_1 E_2/(E_1 + E_2).
     pub modulus: f64,
     /// The master's share of what both give way.
     pub master_share: f64,
 }
 
-impl Series {
+impl SpringsInSeries {
     /// Of the slave's and the master's modulus.
     pub fn new(slave: f64, master: f64) -> Self {
         Self { modulus: slave * master / (slave + master), master_share: slave / (slave + master) }

@@ -1,7 +1,7 @@
 //! The body's own image: an equal pair (see [`crate::contact::pair`]). Of the two bodies one is
 //! simulated, whose surface has slaves and masters.
 
-use super::joint::{Bodies, Series};
+use super::joint::{Bodies, SpringsInSeries};
 use crate::contact::interface::Symmetry;
 use crate::contact::pair::{Image, PairInterface};
 use crate::linalg::LinalgError;
@@ -30,8 +30,8 @@ impl Bodies for EqualPair {
         PairInterface::new(mesh, u, self.image)
     }
 
-    fn series(&self) -> Series {
-        Series::new(1.0, 1.0)
+    fn series(&self) -> SpringsInSeries {
+        SpringsInSeries::new(1.0, 1.0)
     }
 
     /// Half-way to the image of the centre.

@@ -21,7 +21,7 @@ use crate::linalg::fgmres::System;
 use crate::linalg::fold::{Fold, Parity};
 use crate::linalg::{BlockMatrix, Hierarchy, LinalgError, Pattern};
 use crate::mesh::Mesh;
-use crate::solver::system::{apply_rows, turn_node};
+use crate::solver::contact_rows::{apply_rows, turn_node};
 
 /// Solves for the unknowns y of two bodies.
 #[derive(Debug)]

@@ -29,8 +29,11 @@ pub struct Tie<I> {
     pub symmetric: bool,
     /// What each body keeps while it is only pressed: the mirror in x or the half turn round z.
     symmetry: Symmetry,
+    /// Nodes of the contact rows.
     pub contact_nodes: Vec<u32>,
+    /// What ties the bodies.
     pub interface: Arc<I>,
+    /// One a contact node, in their order.
     pub rows: Vec<Rows<f64>>,
     /// Which unknowns are fixed.
     pub fixed: Vec<bool>,

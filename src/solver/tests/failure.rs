@@ -7,7 +7,7 @@ use crate::solver::pose::Pose;
 use crate::solver::{FULLY_PLASTIC, held_linear, loosest_linear};
 
 fn plastic() -> Material<f64> {
-    Material { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::linear(2e-3, 0.02).unwrap() }
+    Material { elasticity: Elasticity::new(1.0, 0.3), hardening: FlowStress::linear(2e-3, 0.02).unwrap() }
 }
 
 fn rig(max_iterations: usize) -> Rig {

@@ -18,12 +18,12 @@ use crate::compute::handle::at;
 use crate::compute::{CaseModel, Compute, Energies, Fault, Outcome};
 use crate::contact::coulomb::{Friction, Status};
 use crate::linalg::{LinearSolver, Pattern, SolverKind};
-use crate::material::hardening::Hardening;
+use crate::material::hardening::FlowStress;
 use crate::material::{Elasticity, Material};
 use crate::mesh::Mesh;
 
 pub fn elastic(nu: f64) -> Material<f64> {
-    Material { elasticity: Elasticity::new(1.0, nu), hardening: Hardening::Elastic }
+    Material { elasticity: Elasticity::new(1.0, nu), hardening: FlowStress::Elastic }
 }
 
 /// A body, its committed state and the iteration that moves it on.

@@ -39,7 +39,7 @@ fn a_pressed_brick_has_a_uniform_pressure() {
     let stretch = 0.9_f64;
     let mesh = irregular_brick();
     let elasticity = cork(stretch);
-    let material = Material { elasticity, hardening: Hardening::Elastic };
+    let material = Material { elasticity, hardening: FlowStress::Elastic };
     let mut rig = Rig::new(mesh, material, Friction::Coulomb(0.0), TIGHT);
     let report = rig.to(0.9 * (1.0 - stretch), 0.0);
     // -P_zz = -dW/dlambda of a uniaxial stretch.
@@ -88,7 +88,7 @@ fn a_bonded_layer_is_squeezed_and_sheared_uniformly() {
 fn a_body_that_lost_its_contact_is_in_equilibrium() {
     // Pressed until it flows, then lifted off: residual stresses remain, and no force by which to
     // scale what rounding leaves.
-    let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::ideal(2e-3).unwrap() };
+    let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening: FlowStress::ideal(2e-3).unwrap() };
     let mut rig = Rig::new(
         irregular_brick(),
         material,

@@ -45,7 +45,7 @@ fn cube(material: Material<f64>, friction: Friction<f64>) -> Rig {
 }
 
 fn plastic() -> Material<f64> {
-    Material { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::linear(2e-3, 0.05).unwrap() }
+    Material { elasticity: Elasticity::new(1.0, 0.3), hardening: FlowStress::linear(2e-3, 0.05).unwrap() }
 }
 
 fn histories() -> Vec<History> {

@@ -3,15 +3,15 @@
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex};
 
-use super::{Request, Told, lock};
+use super::queue::{HostReport, QueuedCall, lock};
 use crate::compute::traffic::Traffic;
 use crate::compute::{About, Answer, Call, CaseModel, Compute, ComputeError};
 
 /// The way to one of the places of a shared backend.
-pub struct Place {
+pub struct Slot {
     slot: usize,
-    requests: Sender<Request>,
-    told: Arc<Mutex<Told>>,
+    requests: Sender<QueuedCall>,
+    told: Arc<Mutex<HostReport>>,
 }
 
 /// One case at its place of a shared backend, which it takes for its own: there it is the only
@@ -19,16 +19,16 @@ pub struct Place {
 pub struct Guest {
     model: [CaseModel; 1],
     slot: usize,
-    requests: Sender<Request>,
-    told: Arc<Mutex<Told>>,
+    requests: Sender<QueuedCall>,
+    told: Arc<Mutex<HostReport>>,
     /// Notes heard so far.
     heard: usize,
     /// What had passed to the device and back before this case.
     before: Traffic,
 }
 
-impl Place {
-    pub(super) fn new(slot: usize, requests: Sender<Request>, told: Arc<Mutex<Told>>) -> Self {
+impl Slot {
+    pub(super) fn new(slot: usize, requests: Sender<QueuedCall>, told: Arc<Mutex<HostReport>>) -> Self {
         Self { slot, requests, told }
     }
 
@@ -61,10 +61,10 @@ fn gone() -> ComputeError {
     ComputeError::Device("whoever served the batch has gone".to_owned())
 }
 
-fn ask(host: &Sender<Request>, case: usize, call: Call) -> Result<Answer, ComputeError> {
+fn ask(host: &Sender<QueuedCall>, case: usize, call: Call) -> Result<Answer, ComputeError> {
     // A channel for each request: it closes with the request if the host goes before it answers.
     let (reply, answer) = channel();
-    host.send(Request { case, call, reply }).map_err(|_| gone())?;
+    host.send(QueuedCall { case, call, reply }).map_err(|_| gone())?;
     answer.recv().map_err(|_| gone())?
 }
 

@@ -12,42 +12,29 @@
 //! depend on the others of the call ([`Compute`]), so neither do results.
 
 mod guest;
+mod queue;
 
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
-pub use self::guest::{Guest, Place};
+pub use self::guest::{Guest, Slot};
+use self::queue::{Answered, HostReport, QueuedCall, lock};
 use crate::compute::select::SharedCalls;
-use crate::compute::{About, Answer, Call, Compute, ComputeError};
-
-/// What the backend says of itself, for all guests.
-struct Told {
-    about: About,
-    notes: Vec<String>,
-}
-
-type Answered = Result<Answer, ComputeError>;
-
-/// What a case asks, and the way back to it.
-struct Request {
-    case: usize,
-    call: Call,
-    reply: Sender<Answered>,
-}
+use crate::compute::{Call, Compute};
 
 /// A backend that will be shared.
 pub struct Host {
     backend: Box<dyn Compute>,
-    requests: Receiver<Request>,
-    told: Arc<Mutex<Told>>,
+    requests: Receiver<QueuedCall>,
+    told: Arc<Mutex<HostReport>>,
 }
 
 /// A host for a backend and a place for each of its cases.
-pub fn share(backend: Box<dyn Compute>) -> (Host, Vec<Place>) {
+pub fn share(backend: Box<dyn Compute>) -> (Host, Vec<Slot>) {
     let cases = backend.models().len();
-    let told = Arc::new(Mutex::new(Told { about: backend.about(), notes: Vec::new() }));
+    let told = Arc::new(Mutex::new(HostReport { about: backend.about(), notes: Vec::new() }));
     let (sender, requests) = channel();
-    let places = (0..cases).map(|slot| Place::new(slot, sender.clone(), told.clone())).collect();
+    let places = (0..cases).map(|slot| Slot::new(slot, sender.clone(), told.clone())).collect();
     (Host { backend, requests, told }, places)
 }
 
@@ -57,7 +44,7 @@ impl Host {
     pub fn serve(mut self) -> SharedCalls {
         let mut shared = SharedCalls::default();
         while let Ok(first) = self.requests.recv() {
-            let mut alike: Vec<Vec<Request>> = vec![vec![first]];
+            let mut alike: Vec<Vec<QueuedCall>> = vec![vec![first]];
             for request in self.requests.try_iter() {
                 match alike.iter_mut().find(|of| of[0].call.goes_with(&request.call)) {
                     Some(of) => of.push(request),
@@ -82,15 +69,11 @@ impl Host {
     }
 
     /// Answers requests of different cases, all of a kind, in one call.
-    fn answer(&mut self, alike: Vec<Request>) -> Vec<(Sender<Answered>, Answered)> {
+    fn answer(&mut self, alike: Vec<QueuedCall>) -> Vec<(Sender<Answered>, Answered)> {
         let (replies, calls): (Vec<_>, Vec<_>) = alike.into_iter().map(|r| (r.reply, (r.case, r.call))).unzip();
         match self.backend.call(calls) {
             Ok(answers) => replies.into_iter().zip(answers.into_iter().map(Ok)).collect(),
             Err(error) => replies.into_iter().map(|reply| (reply, Err(error.clone()))).collect(),
         }
     }
-}
-
-fn lock(told: &Mutex<Told>) -> MutexGuard<'_, Told> {
-    told.lock().unwrap_or_else(PoisonError::into_inner)
 }

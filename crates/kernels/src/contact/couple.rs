@@ -11,7 +11,7 @@
 //! slave node the force that the interface carries there, at a master node the body's own and what
 //! the slave exerts on it, which is nothing together in equilibrium.
 
-use super::frame::{Frame, frame, from_frame, to_frame};
+use super::frame::{ContactFrame, frame, from_frame, to_frame};
 use super::interface::{Interface, inward_normals};
 use super::mortar::{Surface, weights_between};
 use crate::mesh::Mesh;
@@ -24,7 +24,7 @@ pub struct CoupleInterface {
     /// Per contact node: the slave that it is, or of a master the one that it has most to do with.
     pub facing: Vec<Option<usize>>,
     /// Per slave: frame [t_1, t_2, n], in the slave's coordinates.
-    pub frames: Vec<Frame>,
+    pub frames: Vec<ContactFrame>,
     /// Area of the interface that belongs to each slave.
     pub area: Vec<f64>,
     /// Per slave: y is not coupled, for the symmetry plane sees to it.
@@ -128,7 +128,7 @@ impl Interface for CoupleInterface {
         &self.facing
     }
 
-    fn frames(&self) -> &[Frame] {
+    fn frames(&self) -> &[ContactFrame] {
         &self.frames
     }
 

@@ -1,7 +1,7 @@
 //! Frames of a surface: two tangents and a normal.
 
 /// Two unit tangents and the unit normal, which points into the body.
-pub type Frame = [[f64; 3]; 3];
+pub type ContactFrame = [[f64; 3]; 3];
 
 /// A vector of length one; upward where there is no direction.
 pub fn unit(v: [f64; 3]) -> [f64; 3] {
@@ -10,7 +10,7 @@ pub fn unit(v: [f64; 3]) -> [f64; 3] {
 }
 
 /// The frame of a normal: the first tangent along x as far as it can be.
-pub fn frame(normal: [f64; 3]) -> Frame {
+pub fn frame(normal: [f64; 3]) -> ContactFrame {
     let n = unit(normal);
     let t1 = unit(std::array::from_fn(|i| if i == 0 { 1.0 } else { 0.0 } - n[0] * n[i]));
     let t2 = [n[1] * t1[2] - n[2] * t1[1], n[2] * t1[0] - n[0] * t1[2], n[0] * t1[1] - n[1] * t1[0]];
@@ -18,11 +18,11 @@ pub fn frame(normal: [f64; 3]) -> Frame {
 }
 
 /// Components of a vector in a frame.
-pub fn to_frame(frame: &Frame, v: &[f64; 3]) -> [f64; 3] {
+pub fn to_frame(frame: &ContactFrame, v: &[f64; 3]) -> [f64; 3] {
     frame.map(|axis| axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2])
 }
 
 /// The vector that has these components in a frame.
-pub fn from_frame(frame: &Frame, v: &[f64; 3]) -> [f64; 3] {
+pub fn from_frame(frame: &ContactFrame, v: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| frame[0][i] * v[0] + frame[1][i] * v[1] + frame[2][i] * v[2])
 }

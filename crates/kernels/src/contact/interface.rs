@@ -7,7 +7,7 @@
 use std::collections::HashMap;
 use std::fmt::Debug;
 
-use super::frame::{Frame, to_frame, unit};
+use super::frame::{ContactFrame, to_frame, unit};
 use crate::mesh::Mesh;
 
 /// The interface of one step: fixed while it is solved, made anew for the next.
@@ -19,7 +19,7 @@ pub trait Interface: Debug + Default + Send + Sync {
     fn facing(&self) -> &[Option<usize>];
 
     /// Per slave: frame [t_1, t_2, n].
-    fn frames(&self) -> &[Frame];
+    fn frames(&self) -> &[ContactFrame];
 
     /// The unknown of component 0 of a slave.
     fn base(&self, k: usize) -> usize;

@@ -10,7 +10,7 @@
 //! the force that the interface carries there, at a master node the body's own and what the image
 //! exerts on it, which is nothing together in equilibrium.
 
-use super::frame::{Frame, frame, from_frame, to_frame};
+use super::frame::{ContactFrame, frame, from_frame, to_frame};
 use super::interface::{Interface, inward_normals};
 use super::inversion::inverted_image_weights;
 use super::mortar::{Weights, self_image_weights};
@@ -51,7 +51,7 @@ pub struct PairInterface {
     /// Per contact node: the slave that it is, if it is one.
     pub slave_of: Vec<Option<usize>>,
     /// Per slave: frame [t_1, t_2, n].
-    pub frames: Vec<Frame>,
+    pub frames: Vec<ContactFrame>,
     /// Per contact node: the slave that it has most to do with.
     pub facing: Vec<Option<usize>>,
     /// Nodes of the contact nodes.
@@ -61,16 +61,61 @@ pub struct PairInterface {
     /// Per slave: the share of each master's load that is its own; the shares of a master add up to
     /// one.
     shares: Vec<Vec<(usize, f64)>>,
-    /// Slaves that have to do with other slaves or their own image, and their matrices by
-    /// component: E and its inverse, row after row.
-    seam: Vec<usize>,
-    direct: [Vec<f64>; 3],
-    inverse: [Vec<f64>; 3],
-    /// Position in `seam`.
-    in_seam: Vec<Option<usize>>,
+    seam: Seam,
     /// Per slave: y is not coupled. It is so on the symmetry plane, and on the seam, where there is
     /// no slip along y.
     free_y: Vec<bool>,
+}
+
+/// Slaves that have to do with other slaves or their own image.
+#[derive(Clone, Debug, Default)]
+struct Seam {
+    slaves: Vec<usize>,
+    /// Their matrices by component, row after row: E, and its inverse.
+    direct: [Vec<f64>; 3],
+    inverse: [Vec<f64>; 3],
+    /// Per slave of the interface: its position in `slaves`.
+    position: Vec<Option<usize>>,
+}
+
+impl Seam {
+    /// From the coefficients of w, row by row, and the slave that each node is.
+    fn of(coefficients: &[Vec<(usize, [f64; 3])>], slave_of: &[Option<usize>]) -> Self {
+        let plain = |k: usize, row: &[(usize, [f64; 3])]| {
+            row.iter().all(|&(j, c)| slave_of[j].is_none_or(|other| other == k && c == [1.0; 3]))
+        };
+        let mut is_in = vec![false; coefficients.len()];
+        for (k, row) in coefficients.iter().enumerate().filter(|(k, row)| !plain(*k, row)) {
+            is_in[k] = true;
+            row.iter().filter_map(|e| slave_of[e.0]).for_each(|other| is_in[other] = true);
+        }
+        let slaves: Vec<usize> = (0..is_in.len()).filter(|&k| is_in[k]).collect();
+        let mut position = vec![None; is_in.len()];
+        slaves.iter().enumerate().for_each(|(g, &k)| position[k] = Some(g));
+        let n = slaves.len();
+        let direct: [Vec<f64>; 3] = std::array::from_fn(|c| {
+            let mut e = vec![0.0; n * n];
+            for (g, &k) in slaves.iter().enumerate() {
+                for &(j, w) in &coefficients[k] {
+                    if let Some(other) = slave_of[j].and_then(|other| position[other]) {
+                        e[g * n + other] += w[c];
+                    }
+                }
+            }
+            e
+        });
+        let inverse = std::array::from_fn(|c| invert(&direct[c], n));
+        Self { slaves, direct, inverse, position }
+    }
+
+    /// The inverse of E, or its transpose, at the seam's slaves.
+    fn solve(&self, w: &mut [[f64; 3]], entry: impl Fn(&[f64], usize, usize, usize) -> f64) {
+        let n = self.slaves.len();
+        let before: Vec<[f64; 3]> = self.slaves.iter().map(|&k| w[k]).collect();
+        for (g, &k) in self.slaves.iter().enumerate() {
+            w[k] = std::array::from_fn(|c| (0..n).map(|other| entry(&self.inverse[c], n, g, other) * before[other][c]).sum());
+        }
+    }
 }
 
 /// Share of an element that the seam may be off a node.
@@ -100,90 +145,19 @@ impl PairInterface {
         let free_y: Vec<bool> = rows.iter().map(|row| row.at_seam || on_symmetry(row.slave)).collect();
         let coefficients: Vec<Vec<(usize, [f64; 3])>> =
             rows.iter().zip(&free_y).map(|(row, &free)| combine(row, signs, free)).collect();
-        let mut facing: Vec<Option<(usize, f64)>> = vec![None; nodes.len()];
-        for (k, row) in rows.iter().enumerate() {
-            facing[row.slave] = Some((k, f64::INFINITY));
-            for &(j, w) in &row.image {
-                if facing[j].is_none_or(|(_, most)| w > most) {
-                    facing[j] = Some((k, w));
-                }
-            }
-        }
-        let plain = |k: usize, row: &[(usize, [f64; 3])]| {
-            row.iter().all(|&(j, c)| slave_of[j].is_none_or(|other| other == k && c == [1.0; 3]))
-        };
-        let mut in_group = vec![false; rows.len()];
-        for (k, row) in coefficients.iter().enumerate().filter(|(k, row)| !plain(*k, row)) {
-            in_group[k] = true;
-            row.iter().filter_map(|e| slave_of[e.0]).for_each(|other| in_group[other] = true);
-        }
-        let seam: Vec<usize> = (0..rows.len()).filter(|&k| in_group[k]).collect();
-        let mut in_seam = vec![None; rows.len()];
-        seam.iter().enumerate().for_each(|(g, &k)| in_seam[k] = Some(g));
-        let n = seam.len();
-        let direct: [Vec<f64>; 3] = std::array::from_fn(|c| {
-            let mut e = vec![0.0; n * n];
-            for (g, &k) in seam.iter().enumerate() {
-                for &(j, w) in &coefficients[k] {
-                    if let Some(other) = slave_of[j].and_then(|other| in_seam[other]) {
-                        e[g * n + other] += w[c];
-                    }
-                }
-            }
-            e
-        });
-        let inverse = std::array::from_fn(|c| invert(&direct[c], n));
-        let frames = rows
-            .iter()
-            .map(|row| {
-                let mut normal = [0.0; 3];
-                for &(j, w) in &row.own {
-                    (0..3).for_each(|c| normal[c] += w * up[j][c]);
-                }
-                for &(j, w) in &row.image {
-                    (0..3).for_each(|c| normal[c] -= w * signs[c] * up[j][c]);
-                }
-                if free_y[slave_of[row.slave].unwrap_or(0)] {
-                    normal[1] = 0.0;
-                }
-                frame(normal)
-            })
-            .collect();
-        let mut carried = vec![0.0; nodes.len()];
-        for row in &rows {
-            row.image.iter().for_each(|&(j, w)| carried[j] += row.area * w);
-        }
-        let shares = rows
-            .iter()
-            .map(|row| {
-                let to_masters = row.image.iter().filter(|e| slave_of[e.0].is_none() && carried[e.0] > 0.0);
-                to_masters.map(|&(j, w)| (j, row.area * w / carried[j])).collect()
-            })
-            .collect();
+        let seam = Seam::of(&coefficients, &slave_of);
         let masters = coefficients.into_iter().map(|row| row.into_iter().filter(|e| slave_of[e.0].is_none()).collect()).collect();
         Self {
             image,
             slaves: rows.iter().map(|row| row.slave).collect(),
+            frames: rows.iter().zip(&free_y).map(|(row, &free)| frame(mean_normal(row, &up, signs, free))).collect(),
+            facing: facing(&rows, nodes.len()),
+            shares: shares(&rows, &slave_of),
             slave_of,
-            frames,
-            facing: facing.into_iter().map(|f| f.map(|(k, _)| k)).collect(),
             nodes,
             masters,
-            shares,
             seam,
-            direct,
-            inverse,
-            in_seam,
             free_y,
-        }
-    }
-
-    /// The inverse of E, or its transpose, at the seam's slaves.
-    fn through_seam(&self, w: &mut [[f64; 3]], entry: impl Fn(&[f64], usize, usize, usize) -> f64) {
-        let n = self.seam.len();
-        let before: Vec<[f64; 3]> = self.seam.iter().map(|&k| w[k]).collect();
-        for (g, &k) in self.seam.iter().enumerate() {
-            w[k] = std::array::from_fn(|c| (0..n).map(|other| entry(&self.inverse[c], n, g, other) * before[other][c]).sum());
         }
     }
 
@@ -225,7 +199,7 @@ impl Interface for PairInterface {
         &self.facing
     }
 
-    fn frames(&self) -> &[Frame] {
+    fn frames(&self) -> &[ContactFrame] {
         &self.frames
     }
 
@@ -241,13 +215,13 @@ impl Interface for PairInterface {
     fn relative_along_axes(&self, k: usize, x: &[f64]) -> [f64; 3] {
         let at = |node: usize| &x[3 * node..3 * node + 3];
         let mut w = [0.0; 3];
-        match self.in_seam[k] {
+        match self.seam.position[k] {
             None => w.copy_from_slice(at(self.nodes[self.slaves[k]])),
             Some(g) => {
-                let n = self.seam.len();
-                for (other, &slave) in self.seam.iter().enumerate() {
+                let n = self.seam.slaves.len();
+                for (other, &slave) in self.seam.slaves.iter().enumerate() {
                     let x = at(self.nodes[self.slaves[slave]]);
-                    (0..3).for_each(|c| w[c] += self.direct[c][g * n + other] * x[c]);
+                    (0..3).for_each(|c| w[c] += self.seam.direct[c][g * n + other] * x[c]);
                 }
             }
         }
@@ -269,7 +243,7 @@ impl Interface for PairInterface {
             }
             rest.push(w);
         }
-        self.through_seam(&mut rest, |m, n, row, column| m[row * n + column]);
+        self.seam.solve(&mut rest, |m, n, row, column| m[row * n + column]);
         for (k, w) in rest.into_iter().enumerate() {
             let base = self.base(k);
             y[base..base + 3].copy_from_slice(&w);
@@ -283,7 +257,7 @@ impl Interface for PairInterface {
                 [f[base], f[base + 1], f[base + 2]]
             })
             .collect();
-        self.through_seam(&mut forces, |m, n, row, column| m[column * n + row]);
+        self.seam.solve(&mut forces, |m, n, row, column| m[column * n + row]);
         for (k, force) in forces.into_iter().enumerate() {
             for &(j, w) in &self.masters[k] {
                 let x = 3 * self.nodes[j];
@@ -296,14 +270,14 @@ impl Interface for PairInterface {
 
     fn nodal(&self, forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut nodal = vec![[0.0; 3]; self.nodes.len()];
-        let n = self.seam.len();
+        let n = self.seam.slaves.len();
         for (k, force) in forces.iter().enumerate() {
             let force = from_frame(&self.frames[k], force);
-            match self.in_seam[k] {
+            match self.seam.position[k] {
                 None => (0..3).for_each(|c| nodal[self.slaves[k]][c] += force[c]),
                 Some(g) => {
-                    for (other, &slave) in self.seam.iter().enumerate() {
-                        (0..3).for_each(|c| nodal[self.slaves[slave]][c] += self.direct[c][g * n + other] * force[c]);
+                    for (other, &slave) in self.seam.slaves.iter().enumerate() {
+                        (0..3).for_each(|c| nodal[self.slaves[slave]][c] += self.seam.direct[c][g * n + other] * force[c]);
                     }
                 }
             }
@@ -367,6 +341,49 @@ fn combine(row: &Weights, signs: [f64; 3], free_y: bool) -> Vec<(usize, [f64; 3]
     }
     out.sort_by_key(|e| e.0);
     out
+}
+
+/// The slave that each of so many nodes is, or the one in whose image it has the most weight.
+fn facing(rows: &[Weights], nodes: usize) -> Vec<Option<usize>> {
+    let mut facing: Vec<Option<(usize, f64)>> = vec![None; nodes];
+    for (k, row) in rows.iter().enumerate() {
+        facing[row.slave] = Some((k, f64::INFINITY));
+        for &(j, w) in &row.image {
+            if facing[j].is_none_or(|(_, most)| w > most) {
+                facing[j] = Some((k, w));
+            }
+        }
+    }
+    facing.into_iter().map(|f| f.map(|(k, _)| k)).collect()
+}
+
+/// The mean of the two surfaces' normals at a slave, of `up` at each node; without a part along y
+/// where y is not coupled.
+fn mean_normal(row: &Weights, up: &[[f64; 3]], signs: [f64; 3], free_y: bool) -> [f64; 3] {
+    let mut normal = [0.0; 3];
+    for &(j, w) in &row.own {
+        (0..3).for_each(|c| normal[c] += w * up[j][c]);
+    }
+    for &(j, w) in &row.image {
+        (0..3).for_each(|c| normal[c] -= w * signs[c] * up[j][c]);
+    }
+    if free_y {
+        normal[1] = 0.0;
+    }
+    normal
+}
+
+/// Per slave: the share of each master's load that is its own.
+fn shares(rows: &[Weights], slave_of: &[Option<usize>]) -> Vec<Vec<(usize, f64)>> {
+    let mut carried = vec![0.0; slave_of.len()];
+    for row in rows {
+        row.image.iter().for_each(|&(j, w)| carried[j] += row.area * w);
+    }
+    let of = |row: &Weights| {
+        let to_masters = row.image.iter().filter(|e| slave_of[e.0].is_none() && carried[e.0] > 0.0);
+        to_masters.map(|&(j, w)| (j, row.area * w / carried[j])).collect()
+    };
+    rows.iter().map(of).collect()
 }
 
 /// The inverse of a small dense matrix, with partial pivoting.

@@ -14,7 +14,7 @@
 //! element E h_c: p/E times kappa h_c, 1e-4 and less, and without a trace in the number of
 //! iterations.
 
-use super::frame::{Frame, frame};
+use super::frame::{ContactFrame, frame};
 
 /// A rigid sphere, or a plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -38,7 +38,7 @@ impl Rigid {
 
     /// The frame at a point: t1 along x as far as it can be, t2 along y exactly on the symmetry
     /// plane.
-    pub fn frame(&self, x: &[f64; 3]) -> Frame {
+    pub fn frame(&self, x: &[f64; 3]) -> ContactFrame {
         let k = self.curvature;
         let [t1, t2, n] = frame([k * x[0], k * x[1], 1.0 + k * x[2]]);
         [t1, if x[1] == 0.0 { [0.0, 1.0, 0.0] } else { t2 }, n]

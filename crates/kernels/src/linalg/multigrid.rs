@@ -24,7 +24,7 @@ pub(super) const COARSEST_DEGREE: usize = 24;
 pub(super) const COARSEST_LOW: f32 = 0.03;
 
 #[derive(Clone, Debug)]
-struct Level {
+struct GridLevel {
     smoother: Smoother,
     /// To the next coarser level; none on the coarsest.
     transfer: Option<Transfer>,
@@ -52,7 +52,7 @@ pub struct OnLevel<'a> {
 /// A multigrid preconditioner for one sparsity pattern and one chain of prolongations.
 #[derive(Clone, Debug)]
 pub struct Hierarchy {
-    levels: Vec<Level>,
+    levels: Vec<GridLevel>,
     fixed: Fixed,
     /// The mask of the update before.
     fixed_before: Fixed,
@@ -74,9 +74,9 @@ impl Hierarchy {
         for prolongation in prolongations {
             let (transfer, coarse) = Transfer::new(&fine, prolongation);
             let smoother = Smoother::new(std::mem::replace(&mut fine, coarse), DEGREE, LOW);
-            levels.push(Level::new(smoother, Some(transfer)));
+            levels.push(GridLevel::new(smoother, Some(transfer)));
         }
-        levels.push(Level::new(Smoother::new(fine, COARSEST_DEGREE, COARSEST_LOW), None));
+        levels.push(GridLevel::new(Smoother::new(fine, COARSEST_DEGREE, COARSEST_LOW), None));
         Ok(Self { levels, fixed: Fixed::default(), fixed_before: Fixed::default(), complete: false })
     }
 
@@ -120,7 +120,7 @@ impl Hierarchy {
     /// notes the rows that are not `as_it_was`.
     fn take<T: Real>(&mut self, matrix: &BlockMatrix<T>, as_it_was: bool) -> Result<(), LinalgError> {
         let (fixed, before) = (&self.fixed, &self.fixed_before);
-        let Level { smoother, changed, .. } = &mut self.levels[0];
+        let GridLevel { smoother, changed, .. } = &mut self.levels[0];
         let BlockMatrix { pattern, blocks } = &mut smoother.matrix;
         let not_finite = AtomicUsize::new(usize::MAX);
         each_row(blocks, &pattern.row_start, changed, |i, row, changed| {
@@ -214,7 +214,7 @@ impl Hierarchy {
     }
 }
 
-impl Level {
+impl GridLevel {
     fn new(smoother: Smoother, transfer: Option<Transfer>) -> Self {
         let zero = vec![[0.0; 4]; smoother.matrix.rows()];
         let changed = vec![true; zero.len()];

@@ -1,8 +1,8 @@
 //! Isotropic hardening: the flow stress sigma against the equivalent plastic strain alpha.
 //!
-//! Every law answers the same four questions: [`flow_stress`](Hardening::flow_stress),
-//! [`slope`](Hardening::slope), [`plastic_work`](Hardening::plastic_work) and
-//! [`plastic_strain_increment`](Hardening::plastic_strain_increment). The last one is the scalar
+//! Every law answers the same four questions: [`flow_stress`](FlowStress::flow_stress),
+//! [`slope`](FlowStress::slope), [`plastic_work`](FlowStress::plastic_work) and
+//! [`plastic_strain_increment`](FlowStress::plastic_strain_increment). The last one is the scalar
 //! equation of the radial return,
 //! ```text
 //! q_trial - sigma(alpha_n + da) - 3 mu_bar da = 0,        q = sqrt(3/2) |s|,    da = sqrt(2/3) d_gamma,
@@ -23,7 +23,7 @@ use crate::real::Real;
 ///
 /// Build it with the constructors, which check the parameters.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Hardening<R> {
+pub enum FlowStress<R> {
     /// Never yields.
     Elastic,
     /// sigma = sigma_Y.
@@ -88,27 +88,27 @@ pub struct PlasticStep<R> {
     pub slope: R,
 }
 
-impl Hardening<f64> {
+impl FlowStress<f64> {
     /// The same law in another precision, each number rounded once.
-    pub fn cast<R: Real>(&self) -> Hardening<R> {
+    pub fn cast<R: Real>(&self) -> FlowStress<R> {
         let of = |x: &f64| R::of(*x);
         match self {
-            Self::Elastic => Hardening::Elastic,
-            Self::Ideal { yield_stress } => Hardening::Ideal { yield_stress: of(yield_stress) },
-            Self::Linear { yield_stress, modulus } => Hardening::Linear { yield_stress: of(yield_stress), modulus: of(modulus) },
+            Self::Elastic => FlowStress::Elastic,
+            Self::Ideal { yield_stress } => FlowStress::Ideal { yield_stress: of(yield_stress) },
+            Self::Linear { yield_stress, modulus } => FlowStress::Linear { yield_stress: of(yield_stress), modulus: of(modulus) },
             Self::Power { yield_stress, coefficient, exponent } => {
-                Hardening::Power { yield_stress: of(yield_stress), coefficient: of(coefficient), exponent: of(exponent) }
+                FlowStress::Power { yield_stress: of(yield_stress), coefficient: of(coefficient), exponent: of(exponent) }
             }
-            Self::Hollomon { coefficient, exponent, youngs_modulus, yield_stress } => Hardening::Hollomon {
+            Self::Hollomon { coefficient, exponent, youngs_modulus, yield_stress } => FlowStress::Hollomon {
                 coefficient: of(coefficient),
                 exponent: of(exponent),
                 youngs_modulus: of(youngs_modulus),
                 yield_stress: of(yield_stress),
             },
             Self::Voce { yield_stress, saturation_stress, rate } => {
-                Hardening::Voce { yield_stress: of(yield_stress), saturation_stress: of(saturation_stress), rate: of(rate) }
+                FlowStress::Voce { yield_stress: of(yield_stress), saturation_stress: of(saturation_stress), rate: of(rate) }
             }
-            Self::Table { points } => Hardening::Table { points: points.iter().map(|p| p.map(R::of)).collect() },
+            Self::Table { points } => FlowStress::Table { points: points.iter().map(|p| p.map(R::of)).collect() },
         }
     }
 }
@@ -127,7 +127,7 @@ fn not_negative(law: &'static str, parameter: &'static str, value: f64) -> Resul
     Err(MaterialError::Parameter { law, parameter, value, remedy: "give a finite number, 0 or more" })
 }
 
-impl<R: Real> Hardening<R> {
+impl<R: Real> FlowStress<R> {
     /// No hardening: sigma = sigma_Y > 0.
     pub fn ideal(yield_stress: f64) -> Result<Self, MaterialError> {
         Ok(Self::Ideal { yield_stress: R::of(positive("ideal", "yield_stress", yield_stress)?) })
@@ -244,7 +244,7 @@ impl<R: Real> Hardening<R> {
         }
     }
 
-    /// [`Hardening::flow_stress`] of the laws that are evaluated point by point.
+    /// [`FlowStress::flow_stress`] of the laws that are evaluated point by point.
     fn curved_flow_stress(&self, alpha: R) -> R {
         match self {
             Self::Power { yield_stress, coefficient, exponent } => *yield_stress + *coefficient * power(alpha, *exponent),
@@ -288,7 +288,7 @@ impl<R: Real> Hardening<R> {
         }
     }
 
-    /// [`Hardening::plastic_work`] of the laws that are evaluated point by point.
+    /// [`FlowStress::plastic_work`] of the laws that are evaluated point by point.
     fn curved_plastic_work(&self, alpha: R, flow_stress: R) -> R {
         let half = R::of(0.5);
         match self {
@@ -323,7 +323,7 @@ impl<R: Real> Hardening<R> {
         self.plastic_step(true, alpha, flow_stress, trial, stiffness)
     }
 
-    /// [`Hardening::plastic_strain_increment`] of one point or of eight, for those that `yielding`
+    /// [`FlowStress::plastic_strain_increment`] of one point or of eight, for those that `yielding`
     /// says; the others get what is meaningless, with an increment that is finite.
     #[inline(always)]
     pub(super) fn plastic_step<T: Number<Scalar = R>>(
@@ -361,7 +361,7 @@ impl<R: Real> Hardening<R> {
         }
     }
 
-    /// [`Hardening::plastic_strain_increment`] of the laws that are solved point by point.
+    /// [`FlowStress::plastic_strain_increment`] of the laws that are solved point by point.
     fn curved_step(&self, alpha: R, flow_stress: R, trial: R, stiffness: R) -> PlasticStep<R> {
         match self {
             Self::Elastic | Self::Ideal { .. } | Self::Linear { .. } => {

@@ -26,7 +26,7 @@ pub mod multistep;
 pub mod point;
 
 pub use error::MaterialError;
-pub use hardening::Hardening;
+pub use hardening::FlowStress;
 pub use j2::{Response, deviatoric_tangent, return_mapping, return_mapping_of_eight};
 pub use laws::{HardeningLaw, HardeningParameter, hollomon_yield_stress};
 
@@ -115,7 +115,7 @@ pub struct Material<R> {
     /// Elastic constants.
     pub elasticity: Elasticity<R>,
     /// The flow stress against the equivalent plastic strain, in the same unit of stress.
-    pub hardening: Hardening<R>,
+    pub hardening: FlowStress<R>,
 }
 
 impl Material<f64> {

@@ -41,7 +41,7 @@ fn imbalance(yield_stress: f64, n: usize) -> (f64, f64) {
     let g = geometry();
     let m = Material {
         elasticity: Elasticity::new(1.0, 0.3),
-        hardening: Hardening::linear(yield_stress, 25.0 * yield_stress).unwrap(),
+        hardening: FlowStress::linear(yield_stress, 25.0 * yield_stress).unwrap(),
     };
     let end = plus(&homogeneous(&irregular(), &[[0.02, 0.03, 0.0], [0.0, -0.02, 0.01], [0.01, 0.0, 0.005]]), &wild(3, 5e-3), 1.0);
     let (mut state, mut committed, mut f, mut work) = (State::default(), ZERO, ZERO, 0.0);

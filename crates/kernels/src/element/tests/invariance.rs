@@ -31,7 +31,7 @@ fn a_rigid_motion_has_no_force() {
 fn forces_turn_with_a_superposed_rotation() {
     let (nodes, g) = (irregular(), geometry());
     for material in [elastic(), hardening()] {
-        let (state, committed) = if material.hardening == Hardening::Elastic {
+        let (state, committed) = if material.hardening == FlowStress::Elastic {
             let u = wild(2, 0.1);
             (update(&g, &material, &State::default(), &State::default().points, &ZERO, &u).unwrap().0, u)
         } else {

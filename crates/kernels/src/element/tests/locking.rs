@@ -146,7 +146,7 @@ fn lame(nu: f64) -> f64 {
 #[test]
 fn a_nearly_incompressible_elastic_cylinder_does_not_lock() {
     for (nu, locked) in [(0.3, 1.0), (0.49, 1.1), (0.4999, 5.0)] {
-        let material = Material { elasticity: Elasticity::new(1.0, nu), hardening: Hardening::Elastic };
+        let material = Material { elasticity: Elasticity::new(1.0, nu), hardening: FlowStress::Elastic };
         let u = 1e-6;
         let exact = lame(nu) * u;
         let mean = Cylinder::new(material.clone(), true).expand(u) / exact;
@@ -162,7 +162,7 @@ fn a_nearly_incompressible_elastic_cylinder_does_not_lock() {
 fn a_fully_plastic_cylinder_reaches_its_limit_pressure() {
     // Hill (1950): p = 2/sqrt(3) sigma_Y ln(b/a) once the whole wall flows, with the present radii.
     let yield_stress = 1e-3;
-    let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::ideal(yield_stress).unwrap() };
+    let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening: FlowStress::ideal(yield_stress).unwrap() };
     let pressure = |mean_dilatation: bool| {
         let mut cylinder = Cylinder::new(material.clone(), mean_dilatation);
         let mut ratio = [0.0; 2];

@@ -9,7 +9,7 @@ mod precision;
 mod tangent;
 
 use super::hex8::{CORNERS, Geometry, NODES, Nodal, QUADRATURE_POINTS, State, internal_force, update};
-use crate::material::hardening::Hardening;
+use crate::material::hardening::FlowStress;
 use crate::material::multistep::Flow;
 use crate::material::{Elasticity, Material};
 use crate::real::Real;
@@ -31,11 +31,11 @@ pub fn geometry() -> Geometry<f64> {
 }
 
 pub fn elastic() -> Material<f64> {
-    Material { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::Elastic }
+    Material { elasticity: Elasticity::new(1.0, 0.3), hardening: FlowStress::Elastic }
 }
 
 pub fn hardening() -> Material<f64> {
-    Material { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::linear(2e-3, 0.05).unwrap() }
+    Material { elasticity: Elasticity::new(1.0, 0.3), hardening: FlowStress::linear(2e-3, 0.05).unwrap() }
 }
 
 /// The displacement (F - I) X of given points.

@@ -19,7 +19,7 @@ fn forces_and_tangents_keep_their_digits_in_f32() {
         let m32 = material.cast::<f32>();
         for amplitude in [1e-5, 1e-3, 0.1] {
             let (state, committed) =
-                if material.hardening == Hardening::Elastic { (State::default(), ZERO) } else { loaded(&g64, &material) };
+                if material.hardening == FlowStress::Elastic { (State::default(), ZERO) } else { loaded(&g64, &material) };
             // The inputs are the rounded ones for both, so that the difference is that of the
             // arithmetic.
             let (state32, committed32) = (cast_state::<f32>(&state), single(&committed));

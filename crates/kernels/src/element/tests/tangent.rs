@@ -122,7 +122,7 @@ fn the_elastic_tangent_is_the_derivative_of_the_force() {
 fn the_plastic_tangent_lacks_the_antisymmetric_moduli_and_nothing_else() {
     let g = geometry();
     for hardening in
-        [Hardening::ideal(2e-3).unwrap(), Hardening::linear(2e-3, 0.05).unwrap(), Hardening::voce(2e-3, 5e-3, 20.0).unwrap()]
+        [FlowStress::ideal(2e-3).unwrap(), FlowStress::linear(2e-3, 0.05).unwrap(), FlowStress::voce(2e-3, 5e-3, 20.0).unwrap()]
     {
         let m = Material { elasticity: Elasticity::new(1.0, 0.3), hardening };
         let (state, committed) = loaded(&g, &m);

@@ -63,7 +63,7 @@ fn eight_side_by_side_have_the_bits_of_each_alone() {
 
 #[test]
 fn a_point_that_is_refused_is_named() {
-    let material = material(Hardening::linear(2e-3, 0.05).unwrap());
+    let material = material(FlowStress::linear(2e-3, 0.05).unwrap());
     for (bad, error) in [(f64::NAN, PointError::NotFinite), (-2.0, PointError::Inverted { jacobian: -1.0 })] {
         for q in 0..8 {
             let mut d = [[[1e-2, 0.0, 0.0], [0.0; 3], [0.0; 3]]; 8];
@@ -74,7 +74,7 @@ fn a_point_that_is_refused_is_named() {
         }
     }
     // A hardening variable that is no number matters where something flows, and there alone.
-    let material = super::material(Hardening::ideal(2e-3).unwrap());
+    let material = super::material(FlowStress::ideal(2e-3).unwrap());
     let mut states = [PointState::default(); 8];
     states[5].alpha = f64::NAN;
     let mut d = [[[1e-2, 0.0, 0.0], [0.0; 3], [0.0; 3]]; 8];

@@ -7,23 +7,23 @@ const STRAINS: [f64; 8] = [1e-8, 1e-5, 1e-3, 4e-3, 0.03, 0.1, 0.5, 2.0];
 
 #[test]
 fn stresses_are_the_formulas() {
-    let at = |law: &Hardening<f64>, alpha: f64| law.flow_stress(alpha);
+    let at = |law: &FlowStress<f64>, alpha: f64| law.flow_stress(alpha);
     let close = |x: f64, y: f64| assert!((x / y - 1.0).abs() < 1e-14, "{x} {y}");
-    close(at(&Hardening::ideal(2e-3).unwrap(), 0.7), 2e-3);
-    close(at(&Hardening::linear(2e-3, 0.05).unwrap(), 0.7), 0.037);
-    close(at(&Hardening::power(2e-3, 5e-3, 0.5).unwrap(), 0.25), 4.5e-3);
-    close(at(&Hardening::voce(2e-3, 5e-3, 20.0).unwrap(), 0.1), 5e-3 - 3e-3 * (-2.0_f64).exp());
-    let table = Hardening::table(&[[0.0, 2e-3], [0.1, 3e-3], [0.2, 3.5e-3]]).unwrap();
+    close(at(&FlowStress::ideal(2e-3).unwrap(), 0.7), 2e-3);
+    close(at(&FlowStress::linear(2e-3, 0.05).unwrap(), 0.7), 0.037);
+    close(at(&FlowStress::power(2e-3, 5e-3, 0.5).unwrap(), 0.25), 4.5e-3);
+    close(at(&FlowStress::voce(2e-3, 5e-3, 20.0).unwrap(), 0.1), 5e-3 - 3e-3 * (-2.0_f64).exp());
+    let table = FlowStress::table(&[[0.0, 2e-3], [0.1, 3e-3], [0.2, 3.5e-3]]).unwrap();
     for (alpha, stress) in [(0.0, 2e-3), (0.05, 2.5e-3), (0.1, 3e-3), (0.15, 3.25e-3), (0.2, 3.5e-3), (9.0, 3.5e-3)] {
         close(at(&table, alpha), stress);
     }
-    assert_eq!(at(&Hardening::Elastic, 0.3), f64::INFINITY);
+    assert_eq!(at(&FlowStress::Elastic, 0.3), f64::INFINITY);
 }
 
 #[test]
 fn hollomon_starts_on_hookes_line_and_follows_the_total_strain() {
     for (coefficient, m) in [(0.02, 3.0), (5e-3, 10.0), (0.1, 1.5), (3e-3, 40.0)] {
-        let law = Hardening::<f64>::hollomon(coefficient, m, 1.0).unwrap();
+        let law = FlowStress::<f64>::hollomon(coefficient, m, 1.0).unwrap();
         let yield_stress = law.flow_stress(0.0);
         let formula = coefficient.powf(m).powf(1.0 / (m - 1.0));
         assert!((yield_stress / formula - 1.0).abs() < 1e-12);
@@ -34,8 +34,8 @@ fn hollomon_starts_on_hookes_line_and_follows_the_total_strain() {
         }
     }
     // Stresses in other units: E = 200 GPa in MPa.
-    let scaled = Hardening::<f64>::hollomon(0.005, 5.0, 1.0).unwrap();
-    let raw = Hardening::<f64>::hollomon(1000.0, 5.0, 200e3).unwrap();
+    let scaled = FlowStress::<f64>::hollomon(0.005, 5.0, 1.0).unwrap();
+    let raw = FlowStress::<f64>::hollomon(1000.0, 5.0, 200e3).unwrap();
     assert!((raw.flow_stress(0.1) / (200e3 * scaled.flow_stress(0.1)) - 1.0).abs() < 1e-14);
 }
 
@@ -91,7 +91,7 @@ fn the_scalar_return_leaves_no_residual() {
 
 #[test]
 fn a_table_return_stops_at_and_crosses_kinks() {
-    let law = Hardening::<f64>::table(&[[0.0, 2.0], [0.1, 3.0], [0.2, 3.5], [0.3, 3.5]]).unwrap();
+    let law = FlowStress::<f64>::table(&[[0.0, 2.0], [0.1, 3.0], [0.2, 3.5], [0.3, 3.5]]).unwrap();
     // To the middle of the second segment from the first: 3.25 = trial - 10 (0.15 - 0.05).
     let step = law.plastic_strain_increment(0.05, 2.5, 4.25, 10.0);
     assert!((step.increment - 0.1).abs() < 1e-15 && (step.flow_stress - 3.25).abs() < 1e-15);
@@ -105,22 +105,22 @@ fn a_table_return_stops_at_and_crosses_kinks() {
 
 #[test]
 fn constructors_refuse_what_is_no_law() {
-    let parameter = |law: Result<Hardening<f64>, MaterialError>, name: &str| match law {
+    let parameter = |law: Result<FlowStress<f64>, MaterialError>, name: &str| match law {
         Err(MaterialError::Parameter { parameter, .. }) => assert_eq!(parameter, name),
         other => panic!("{other:?}"),
     };
-    parameter(Hardening::ideal(0.0), "yield_stress");
-    parameter(Hardening::ideal(f64::NAN), "yield_stress");
-    parameter(Hardening::linear(1.0, -0.1), "modulus");
-    parameter(Hardening::power(1.0, -1.0, 0.5), "coefficient");
-    parameter(Hardening::power(1.0, 1.0, 0.0), "exponent");
-    parameter(Hardening::power(1.0, 1.0, 1.1), "exponent");
-    parameter(Hardening::power(1.0, 1.0, f64::NAN), "exponent");
-    parameter(Hardening::hollomon(1.0, 1.0, 1.0), "exponent");
-    parameter(Hardening::hollomon(-1.0, 3.0, 1.0), "coefficient");
-    parameter(Hardening::voce(2.0, 1.0, 1.0), "saturation_stress");
-    parameter(Hardening::voce(2.0, 3.0, 0.0), "rate");
-    let point = |points: &[[f64; 2]], at: usize| match Hardening::<f64>::table(points) {
+    parameter(FlowStress::ideal(0.0), "yield_stress");
+    parameter(FlowStress::ideal(f64::NAN), "yield_stress");
+    parameter(FlowStress::linear(1.0, -0.1), "modulus");
+    parameter(FlowStress::power(1.0, -1.0, 0.5), "coefficient");
+    parameter(FlowStress::power(1.0, 1.0, 0.0), "exponent");
+    parameter(FlowStress::power(1.0, 1.0, 1.1), "exponent");
+    parameter(FlowStress::power(1.0, 1.0, f64::NAN), "exponent");
+    parameter(FlowStress::hollomon(1.0, 1.0, 1.0), "exponent");
+    parameter(FlowStress::hollomon(-1.0, 3.0, 1.0), "coefficient");
+    parameter(FlowStress::voce(2.0, 1.0, 1.0), "saturation_stress");
+    parameter(FlowStress::voce(2.0, 3.0, 0.0), "rate");
+    let point = |points: &[[f64; 2]], at: usize| match FlowStress::<f64>::table(points) {
         Err(MaterialError::Table { index, .. }) => assert_eq!(index, at),
         other => panic!("{other:?}"),
     };
@@ -131,6 +131,6 @@ fn constructors_refuse_what_is_no_law() {
     point(&[[0.0, 1.0], [0.1, f64::INFINITY]], 1);
     point(&[[0.0, -1.0]], 0);
     // The message names law, key, value and remedy.
-    let message = Hardening::<f64>::linear(1.0, -0.1).unwrap_err().to_string();
+    let message = FlowStress::<f64>::linear(1.0, -0.1).unwrap_err().to_string();
     assert!(message.contains("linear") && message.contains("modulus = -0.1") && message.contains("0 or more"), "{message}");
 }

@@ -42,7 +42,7 @@ fn superposed_rotations_turn_stress_and_state() {
 
 #[test]
 fn a_pure_rotation_of_a_loaded_point_leaves_alpha() {
-    let material = material(Hardening::linear(2e-3, 0.05).unwrap());
+    let material = material(FlowStress::linear(2e-3, 0.05).unwrap());
     let loaded = respond(&material, &STEP, &PointState::default());
     let q = rotation([1.0, 1.0, 0.2], 1.3);
     let turned = respond(&material, &minus_identity(&q), &loaded.state);
@@ -121,7 +121,7 @@ fn stress_follows_from_the_state() {
 
 #[test]
 fn impossible_deformations_are_errors() {
-    let material = material(Hardening::ideal(2e-3).unwrap());
+    let material = material(FlowStress::ideal(2e-3).unwrap());
     let virgin = PointState::default();
     let flat = [[-1.0, 0.0, 0.0], [0.0; 3], [0.0; 3]];
     assert_eq!(return_mapping(&material, &flat, &virgin), Err(PointError::Inverted { jacobian: 0.0 }));
@@ -134,7 +134,7 @@ fn impossible_deformations_are_errors() {
                 d[i][k] = bad;
                 assert!(return_mapping(&material, &d, &virgin).is_err(), "{bad} at {i}{k}");
                 let narrow = d.map(|row| row.map(|x| x as f32));
-                let single = super::material(Hardening::<f32>::ideal(2e-3).unwrap());
+                let single = super::material(FlowStress::<f32>::ideal(2e-3).unwrap());
                 assert!(return_mapping(&single, &narrow, &PointState::default()).is_err(), "f32 {bad} at {i}{k}");
             }
         }

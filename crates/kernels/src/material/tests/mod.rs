@@ -9,7 +9,7 @@ mod sweep;
 mod tangent;
 mod uniaxial;
 
-use super::{Elasticity, Hardening, Material, PointState};
+use super::{Elasticity, FlowStress, Material, PointState};
 use crate::real::Real;
 
 /// 3 x 3, rows first.
@@ -26,22 +26,22 @@ pub fn transpose(a: &Matrix) -> Matrix {
 }
 
 /// Every law, at parameters of the order E = 1.
-pub fn laws<R: Real>() -> Vec<(&'static str, Hardening<R>)> {
+pub fn laws<R: Real>() -> Vec<(&'static str, FlowStress<R>)> {
     vec![
-        ("elastic", Hardening::Elastic),
-        ("ideal", Hardening::ideal(2e-3).unwrap()),
-        ("linear", Hardening::linear(2e-3, 0.05).unwrap()),
-        ("power 0.3", Hardening::power(2e-3, 5e-3, 0.3).unwrap()),
-        ("power 0.1", Hardening::power(2e-3, 5e-3, 0.1).unwrap()),
-        ("power 1", Hardening::power(2e-3, 5e-3, 1.0).unwrap()),
-        ("hollomon 3", Hardening::hollomon(0.02, 3.0, 1.0).unwrap()),
-        ("hollomon 10", Hardening::hollomon(5e-3, 10.0, 1.0).unwrap()),
-        ("voce", Hardening::voce(2e-3, 5e-3, 20.0).unwrap()),
-        ("table", Hardening::table(&[[0.0, 2e-3], [0.01, 3e-3], [0.05, 3.5e-3], [0.3, 5e-3]]).unwrap()),
+        ("elastic", FlowStress::Elastic),
+        ("ideal", FlowStress::ideal(2e-3).unwrap()),
+        ("linear", FlowStress::linear(2e-3, 0.05).unwrap()),
+        ("power 0.3", FlowStress::power(2e-3, 5e-3, 0.3).unwrap()),
+        ("power 0.1", FlowStress::power(2e-3, 5e-3, 0.1).unwrap()),
+        ("power 1", FlowStress::power(2e-3, 5e-3, 1.0).unwrap()),
+        ("hollomon 3", FlowStress::hollomon(0.02, 3.0, 1.0).unwrap()),
+        ("hollomon 10", FlowStress::hollomon(5e-3, 10.0, 1.0).unwrap()),
+        ("voce", FlowStress::voce(2e-3, 5e-3, 20.0).unwrap()),
+        ("table", FlowStress::table(&[[0.0, 2e-3], [0.01, 3e-3], [0.05, 3.5e-3], [0.3, 5e-3]]).unwrap()),
     ]
 }
 
-pub fn material<R: Real>(hardening: Hardening<R>) -> Material<R> {
+pub fn material<R: Real>(hardening: FlowStress<R>) -> Material<R> {
     Material { elasticity: Elasticity::new(1.0, 0.3), hardening }
 }
 

@@ -43,7 +43,8 @@ fn integrate(material: &Material<f64>, steps: usize, growth: f64, second_order: 
 
 #[test]
 fn second_order_on_a_curved_path() {
-    for (name, hardening) in [("ideal", Hardening::ideal(2e-3).unwrap()), ("power", Hardening::power(2e-3, 5e-3, 0.5).unwrap())] {
+    for (name, hardening) in [("ideal", FlowStress::ideal(2e-3).unwrap()), ("power", FlowStress::power(2e-3, 5e-3, 0.5).unwrap())]
+    {
         let material = material(hardening);
         for growth in [1.0, 4.0] {
             let (exact, exact_alpha) = integrate(&material, 20_000, growth, true);
@@ -65,7 +66,7 @@ fn second_order_on_a_curved_path() {
 
 #[test]
 fn nothing_anticipated_is_backward_euler() {
-    let material = material(Hardening::linear(2e-3, 0.05).unwrap());
+    let material = material(FlowStress::linear(2e-3, 0.05).unwrap());
     let d: Matrix = [[0.01, 0.004, 0.0], [0.0, -0.006, 0.0], [0.002, 0.0, -0.003]];
     let committed = respond(&material, &d, &PointState::default()).state;
     assert_eq!(anticipate(&committed, &Flow { strain: [1.0; 6], alpha: 0.1 }, 0.0), committed);
@@ -82,7 +83,7 @@ fn nothing_anticipated_is_backward_euler() {
 
 #[test]
 fn a_point_that_unloads_has_not_flowed() {
-    let material = material(Hardening::power(2e-3, 5e-3, 0.5).unwrap());
+    let material = material(FlowStress::power(2e-3, 5e-3, 0.5).unwrap());
     let d: Matrix = [[0.0, 0.02, 0.0], [0.0; 3], [0.0; 3]];
     let first = respond(&material, &d, &PointState::default());
     let (first, flow) = complete(&material, &d, &PointState::default(), &PointState::default(), first).unwrap();
@@ -102,7 +103,7 @@ fn a_point_that_unloads_has_not_flowed() {
 
 #[test]
 fn the_work_of_anticipated_flow_is_counted() {
-    let material = material(Hardening::linear(2e-3, 0.05).unwrap());
+    let material = material(FlowStress::linear(2e-3, 0.05).unwrap());
     let d: Matrix = [[0.0, 0.01, 0.0], [0.0; 3], [0.0; 3]];
     let (mut state, mut flow, mut work) = (PointState::default(), Flow::default(), 0.0);
     for i in 0..5 {

@@ -6,7 +6,7 @@ use crate::material::{deviatoric_tangent, elastic_energy_deviatoric, return_mapp
 
 /// Worst relative error of f32 (stress, moduli, alpha) after two steps of size `strain`; the inputs
 /// are rounded for both.
-fn single_precision_error(hardening: (Hardening<f32>, Hardening<f64>), strain: f64) -> (f64, f64, f64) {
+fn single_precision_error(hardening: (FlowStress<f32>, FlowStress<f64>), strain: f64) -> (f64, f64, f64) {
     let shape = [[0.7, 0.9, -0.3], [0.2, -0.6, 0.5], [0.4, -0.5, 0.3]];
     let d32: [[f32; 3]; 3] = shape.map(|row: [f64; 3]| row.map(|x| (strain * x) as f32));
     let d64: Matrix = d32.map(|row| row.map(f64::from));

@@ -88,7 +88,7 @@ fn exact_moduli_are_the_derivative() {
 #[test]
 fn symmetrised_moduli_differ_by_the_antisymmetric_part_alone() {
     let d = [[0.02, 0.05, -0.01], [0.01, -0.03, 0.02], [0.015, -0.02, 0.025]];
-    let material = material(Hardening::ideal(2e-3).unwrap());
+    let material = material(FlowStress::ideal(2e-3).unwrap());
     let response = respond(&material, &d, &PointState::default());
     let difference = error(&material, &d, &PointState::default(), false);
     let antisymmetric = antisymmetric(&response);

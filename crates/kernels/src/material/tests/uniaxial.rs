@@ -80,7 +80,7 @@ fn every_law_follows_its_exact_curve() {
 #[test]
 fn small_strain_limit_is_the_textbook() {
     // E -> infinity at fixed sigma: alpha = eps - sigma/E, and compression mirrors tension.
-    let material = material(Hardening::linear(2e-6, 1e-5).unwrap());
+    let material = material(FlowStress::linear(2e-6, 1e-5).unwrap());
     for strain in [3e-6, 1e-4, 0.01] {
         let pull = *uniaxial(&material, strain, 500).unwrap().last().unwrap();
         let alpha = (strain - 2e-6) / (1.0 + 1e-5);
@@ -99,7 +99,7 @@ fn small_strain_limit_is_the_textbook() {
 
 #[test]
 fn reversal_yields_at_the_opposite_stress() {
-    let material = material(Hardening::linear(2e-3, 0.05).unwrap());
+    let material = material(FlowStress::linear(2e-3, 0.05).unwrap());
     let mut point = MaterialPoint::new(material.clone());
     for step in 1..=20 {
         point.stretch(0.005 * f64::from(step)).unwrap();
@@ -153,7 +153,7 @@ fn work_is_conserved() {
 
 #[test]
 fn simple_shear_stays_on_the_yield_surface_and_counts_its_rotation() {
-    let material = material(Hardening::ideal(2e-3).unwrap());
+    let material = material(FlowStress::ideal(2e-3).unwrap());
     let records: Vec<PointRecord> = simple_shear(&material, 1.0, 500).map(Result::unwrap).collect();
     assert_eq!(records.len(), 501);
     let last = records.last().unwrap();
@@ -186,7 +186,7 @@ fn huge_steps_have_answers() {
 
 #[test]
 fn impossible_paths_name_the_step() {
-    let material = material(Hardening::ideal(2e-3).unwrap());
+    let material = material(FlowStress::ideal(2e-3).unwrap());
     let mirrored = [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let mut answers = along(&material, [IDENTITY, mirrored, IDENTITY]);
     assert!(answers.next().unwrap().is_ok() && answers.next().unwrap().is_ok());
