@@ -53,7 +53,21 @@ fn complete(
         let done = plastic_work(h, end, flow_stress(h, end));
         response.plastic_work = max(done - plastic_work(h, committed.alpha, flow_stress(h, committed.alpha)), real(0.0));
     }
+    if response.status == STATUS_YIELDING {
+        response.plastic_work *= dissipated(response.state.be);
+    }
     return Completed(response, flow);
+}
+
+// What flow dissipates over the flow stress times the increment of alpha.
+fn dissipated(be: Sym) -> real {
+    let d = deviator(be);
+    let square = norm_squared(d.tensor);
+    if !(square > 0.0) {
+        return 1.0;
+    }
+    let m = 1.0 + d.mean;
+    return (m * m - 3.0 * m * (sym_determinant(d.tensor) / square)) / (m * m - square * (1.0 / 6.0));
 }
 
 // The deviator of J^(-2/3) f a f^T with f = I + d.

@@ -322,9 +322,9 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: "share of the normal force",
         range: "> 1e-12 and <= 1e-2",
-        meaning: "residual at which a step is accepted; at 1e-3, a step after a turn of the path has F_T wrong by up to 1.5 %",
-        example: "1e-4",
-        ..key("solver", "tolerance", Number(Above(1e-12), AtMost(1e-2), &[]), Defaults("1e-4"))
+        meaning: "residual at which a step is accepted; at 1e-3, F_T changes by 0.8 %",
+        example: "3e-4",
+        ..key("solver", "tolerance", Number(Above(1e-12), AtMost(1e-2), &[]), Defaults("3e-4"))
     },
     Key {
         range: "1 to 100000",

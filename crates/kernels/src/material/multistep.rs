@@ -92,7 +92,29 @@ pub fn complete<R: Real>(
         let work = |alpha: R| hardening.plastic_work(alpha, hardening.flow_stress(alpha));
         response.plastic_work = (work(response.state.alpha) - work(committed.alpha)).max(R::ZERO);
     }
+    if response.yielding {
+        response.plastic_work *= dissipated(&response.state.be);
+    }
     Ok((response, flow))
+}
+
+/// What flow dissipates over the flow stress times the increment of alpha, by the state b_e_bar - I:
+/// 1 but for a fraction of the order of the elastic strain. Dissipated is what the stored energy,
+/// mu/2 (tr b_e_bar - 3), loses while the deviator of b_e_bar shrinks at a determinant of 1. With
+/// s = |dev b_e_bar| and m = tr b_e_bar/3 that determinant is `m^3 - m s^2/2 + det dev b_e_bar`, so
+/// that `dm/ds = (m s - 3 det/s)/(3 m^2 - s^2/2)`, and ds is -2 m times the plastic multiplier (Simo
+/// & Hughes 1998, Box 9.1).
+#[inline]
+fn dissipated<R: Real>(be: &[R; 6]) -> R {
+    let (strain, mean) = deviator(be);
+    let [xx, yy, zz, xy, yz, zx] = strain;
+    let square = norm_squared(&strain);
+    if !(square > R::ZERO) {
+        return R::ONE;
+    }
+    let determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * zx) + zx * (xy * yz - yy * zx);
+    let m = R::ONE + mean;
+    (m * m - R::of(3.0) * m * (determinant / square)) / (m * m - square * R::of(1.0 / 6.0))
 }
 
 /// The deviator of J^(-2/3) f a f^T with f = I + d.

@@ -22,7 +22,7 @@ const REACH: f64 = 1.5;
 /// Spacings beyond over which the moves fade away.
 const FADING: f64 = 3.0;
 /// Radii closer than this, in spacings, count as equal: which of two such points comes first is
-/// then not rounding's to say.
+/// then the angle's to say, not rounding's.
 const TIE: f64 = 1e-6;
 
 impl Layout {
@@ -50,7 +50,6 @@ fn even_entry(layout: &Layout) -> Vec<f64> {
     let mut radius = start.clone();
     // One of each mirrored pair; a pair touches at once.
     let mut order: Vec<usize> = (0..sites.len()).filter(|&n| !blocks.is_left(sites[n])).collect();
-    let turn = turns(&order, &start, &direction, layout.spacing);
     for _ in 0..ROUNDS {
         let mut area = vec![0.0; sites.len()];
         for face in &faces {
@@ -58,7 +57,7 @@ fn even_entry(layout: &Layout) -> Vec<f64> {
             face.iter().zip(shares).for_each(|(&n, share)| area[n as usize] += share);
         }
         let rank = |n: usize| (radius[n] / (TIE * layout.spacing)).round();
-        order.sort_by(|&a, &b| rank(a).total_cmp(&rank(b)).then(turn[a].total_cmp(&turn[b])));
+        order.sort_by(|&a, &b| rank(a).total_cmp(&rank(b)).then(direction[b][0].total_cmp(&direction[a][0])));
         let mut inside = 0.0;
         let mut moved = radius.clone();
         for &n in &order {
@@ -82,18 +81,4 @@ fn even_entry(layout: &Layout) -> Vec<f64> {
         }
     }
     radius.iter().zip(&start).map(|(r, s)| r - s).collect()
-}
-
-/// The turn of each of the points at one radius, which are images of each other in the diagonal
-/// x = y: by turns the one nearer to x and the one nearer to y comes first, so that neither axis is
-/// ahead of the other.
-fn turns(order: &[usize], start: &[f64], direction: &[[f64; 2]], spacing: f64) -> Vec<f64> {
-    let rank = |n: usize| (start[n] / (TIE * spacing)).round();
-    let mut sorted = order.to_vec();
-    sorted.sort_by(|&a, &b| rank(a).total_cmp(&rank(b)));
-    let mut turn = vec![0.0; start.len()];
-    for (i, points) in sorted.chunk_by(|&a, &b| rank(a) == rank(b)).enumerate() {
-        points.iter().for_each(|&n| turn[n] = if i % 2 == 0 { direction[n][1] } else { direction[n][0] });
-    }
-    turn
 }

@@ -48,7 +48,7 @@ pub struct Layout {
     /// Rings over which the square turns into the fine zone's rings.
     pub rounding_rings: usize,
     /// Spacings over which the distances of one ring's nodes from the pole are spread, evenly from
-    /// an axis to the diagonal: 1 makes the nodes enter a growing contact one by one instead of
+    /// the x axis to the y axis: 1 makes the nodes enter a growing contact one by one instead of
     /// ring by ring.
     pub spread: f64,
     /// Radial moves of the surface nodes by their number, in the half ball's plane, that make them
