@@ -27,7 +27,7 @@ yield_stress = 400.0
 elements_per_contact_radius = 4
 contact_radius = 0.16
 [base.solver]
-tolerance = 1e-8
+tolerance = 1e-9
 press_steps = 4
 shear_steps = 4
 [base.output]

@@ -1,4 +1,4 @@
-//! The rows of contact nodes in a matrix: turned into frames, replaced by the conditions of contact.
+//! The rows of contact nodes in a matrix: turned into frames, replaced by what contact demands.
 
 use crate::contact::coulomb::{Rows, Status};
 use crate::contact::frame::ContactFrame;

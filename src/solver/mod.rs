@@ -2,10 +2,10 @@
 //!
 //! `newton` iterates one step, of which `outcome` tells how it went; `iterate` has its vectors, on
 //! the host or on a device. `system` holds the residual of the host's, `contact_rows` those of its
-//! matrix that contact decides on, `opponent` all that depends on what the body is pressed against; `systems` solves for the correction, with
-//! `pair` for two equal spheres and `couple` for two bodies (`tied` is what these have in common),
-//! `phases` is what its parts cost, `pose` where the plate stands. Choosing steps and bisecting
-//! them is the simulation's business.
+//! matrix that contact decides on, `opponent` all that depends on what the body is pressed against;
+//! `systems` solves for the correction, with `pair` for two equal spheres and `couple` for two
+//! bodies (`tied` is what these have in common), `phases` is what its parts cost, `pose` where the
+//! plate stands. Choosing steps and bisecting them is the simulation's business.
 
 pub mod contact_rows;
 pub mod iterate;

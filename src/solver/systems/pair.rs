@@ -6,9 +6,9 @@
 //! right-hand side is split into its even and odd parts, and each goes through a V-cycle of its
 //! own, on half of the body (see [`crate::linalg::fold`]). Up to the first shear all is even.
 //!
-//! Of an inverted image that holds of what is even or odd when the body is turned half round z. Even
-//! then is what is even in both x and y, or odd in both; odd what is even in one of them alone. Each
-//! of the four goes through a V-cycle on a quarter of the body.
+//! Of an inverted image that holds of what is even or odd when the body is turned half round z.
+//! Even then is what is even in both x and y, or odd in both; odd what is even in one of them
+//! alone. Each of the four goes through a V-cycle on a quarter of the body.
 
 use super::half::{HalfCycle, folded_fixed};
 use super::tied::{InSingle, Tie, Tied, clear};

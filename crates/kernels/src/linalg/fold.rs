@@ -63,8 +63,8 @@ pub struct Fold {
 
 impl Fold {
     /// Plans the fold in coordinate `axis` (0 for x, 1 for y) of matrices with a `pattern` to the
-    /// nodes `half` (at x >= 0); `mirror` is the node opposite in it of each node. `None` if they do
-    /// not fit each other, or if blocks couple the two sides.
+    /// nodes `half` (at x >= 0); `mirror` is the node opposite in it of each node. `None` if they
+    /// do not fit each other, or if blocks couple the two sides.
     pub fn new(pattern: &Pattern, half: &[u32], mirror: &[u32], axis: usize) -> Option<Self> {
         let mut folded = vec![u32::MAX; pattern.rows()];
         let mut nodes = Vec::with_capacity(half.len());

@@ -52,7 +52,8 @@ pub struct Response<R: Number> {
     pub beta_4: R,
     /// Increment of the consistency parameter, sqrt(3/2) times that of alpha.
     pub delta_gamma: R,
-    /// Increment of the plastic work per reference volume, the integral of sigma d alpha, stress.
+    /// Increment of the plastic work per reference volume, the integral of sigma d alpha, stress;
+    /// of a committed step what the flow rule dissipates (see `multistep`).
     pub plastic_work: R,
 }
 
