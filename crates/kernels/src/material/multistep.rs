@@ -101,9 +101,9 @@ pub fn complete<R: Real>(
 /// What flow dissipates over the flow stress times the increment of alpha, by b_e_bar - I: 1 but
 /// for a fraction of the order of the elastic strain. Dissipated is what the stored energy,
 /// mu/2 (tr b_e_bar - 3), loses while the deviator of b_e_bar shrinks at a determinant of 1. With
-/// s = |dev b_e_bar| and m = tr b_e_bar/3 that determinant is `m^3 - m s^2/2 + det dev b_e_bar`, so that
-/// `dm/ds = (m s - 3 det/s)/(3 m^2 - s^2/2)`, and ds is -2 m times the plastic multiplier (Simo &
-/// Hughes 1998, Box 9.1).
+/// s = |dev b_e_bar| and m = tr b_e_bar/3 that determinant is `m^3 - m s^2/2 + det dev b_e_bar`, so
+/// that `dm/ds = (m s - 3 det/s)/(3 m^2 - s^2/2)`, and ds is -2 m times the plastic multiplier
+/// (Simo & Hughes 1998, Box 9.1).
 #[inline]
 pub(crate) fn dissipated<R: Real>(be: &[R; 6]) -> R {
     let (strain, mean) = deviator(be);
