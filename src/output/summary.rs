@@ -129,7 +129,7 @@ pub struct Summary {
     /// The same to 0.95 mu.
     #[serde(rename = "delta_T_95")]
     pub delta_t_95: Option<f64>,
-    /// The same to 0.99 mu, see [`SLIP_DISPLACEMENT_RATIO`].
+    /// The same to 0.99 mu, [where slip is full](super::first_shear::SLIP_DISPLACEMENT_RATIO).
     #[serde(rename = "delta_T_slip")]
     pub delta_t_slip: Option<f64>,
     /// Initial tangential stiffness: the tangent dF_T/d delta_T at the start of the shear, where no
