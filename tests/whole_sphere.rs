@@ -24,6 +24,9 @@ fn text(law: &str, friction: &str, elements: usize, path: &[&str]) -> String {
 
 const IDEAL: &str = "law = \"ideal\"\nyield_stress = 2.0";
 const ELASTIC: &str = "law = \"elastic\"";
+/// External work is a sum over the steps: at the 17 of a default press on 4 elements the energies
+/// of these paths balance to 0.5 %.
+const PRESS: &str = "solver.press_steps=40";
 
 /// The rows of a case, which is done.
 fn rows(text: &str, settings: &[&str]) -> Vec<StepRecord> {
@@ -356,8 +359,10 @@ fn every_opponent_takes_every_motion() {
     for (opponent, bodies) in [("opponent={rigid=true, radius=2.0}", 1.0), ("opponent={equal=true}", 2.0), (unlike, 1.0)] {
         let indentation = format!("indentation = {:?}", 0.01 * bodies);
         let moved = "shear = [0.001, 0.0015]\ntwist = 0.01\nroll = [0.002, -0.003]";
-        let all =
-            rows(&text(IDEAL, "0.3", 4, &[&indentation, moved, "shear = \"full-slip\"\nshear_direction = -120.0"]), &[opponent]);
+        let all = rows(
+            &text(IDEAL, "0.3", 4, &[&indentation, moved, "shear = \"full-slip\"\nshear_direction = -120.0"]),
+            &[opponent, PRESS],
+        );
         assert_energy(&all, 0.005, opponent);
         let end = last(&all, 2);
         let (ratio, direction) = (end.f_t.hypot(end.f_t_y) / end.f_n, end.f_t_y.atan2(end.f_t).to_degrees());
@@ -390,7 +395,7 @@ fn a_normal_force_is_held_while_the_sphere_turns() {
 }
 
 /// Of the paths of `fixtures/paths/vector/make.py`, E/sigma_Y = 1000 and mu = 0.3, on its coarser
-/// mesh; over all eight it is 0.16 to 0.45 %.
+/// mesh.
 #[test]
 fn energy_is_balanced_along_vector_paths() {
     // delta_T at 0.95 mu, and the contact radius.
@@ -422,7 +427,7 @@ fn energy_is_balanced_along_vector_paths() {
         let path: Vec<&str> = path.iter().map(String::as_str).collect();
         let text = text("law = \"ideal\"\nyield_stress = 1.0", "0.3", 4, &path);
         let steps = format!("solver.shear_steps={steps}");
-        let all = rows(&text, &["mesh.surface_elements_per_contact_radius=8", &steps]);
+        let all = rows(&text, &["mesh.surface_elements_per_contact_radius=8", &steps, PRESS]);
         assert_energy(&all, 0.005, name);
     }
 }
