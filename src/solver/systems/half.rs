@@ -1,4 +1,4 @@
-//! A V-cycle on half of a body, for what is even in x or what is odd.
+//! A V-cycle on half of a body, for what is even or odd in x, or in y.
 
 use super::tied::clear;
 use crate::linalg::fold::{Fold, Parity};
@@ -22,8 +22,8 @@ impl HalfCycle {
         Self { parity, hierarchy, fixed: vec![false; n], load: vec![0.0; n], z: vec![0.0; n] }
     }
 
-    /// Fixes what the whole body has `fixed` on both sides, and what the parity has none of at x =
-    /// 0.
+    /// Fixes what the whole body has `fixed` on both sides, and what the parity has none of on the
+    /// mirror.
     pub fn fix(&mut self, fold: &Fold, fixed: &[bool]) {
         folded_fixed(fold, self.parity, fixed, &mut self.fixed);
     }

@@ -143,6 +143,13 @@ fn square<R: Number>(a: &[R; 6]) -> [R; 6] {
     ]
 }
 
+/// The determinant of a symmetric tensor.
+#[inline(always)]
+pub(super) fn determinant<R: Number>(a: &[R; 6]) -> R {
+    let [xx, yy, zz, xy, yz, zx] = *a;
+    xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * zx) + zx * (xy * yz - yy * zx)
+}
+
 /// u = t - 1 where t is the largest root of det(D + t I) = 1 for a deviator D: a third of tr
 /// b_e_bar - 3 from dev b_e_bar.
 ///
@@ -152,9 +159,8 @@ fn square<R: Number>(a: &[R; 6]) -> [R; 6] {
 #[inline(always)]
 pub fn isochoric_mean<R: Number>(deviator: &[R; 6], guess: R) -> R {
     let three = R::of(3.0);
-    let [xx, yy, zz, xy, yz, zx] = *deviator;
     let p = R::of(0.5) * norm_squared(deviator);
-    let determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * zx) + zx * (xy * yz - yy * zx);
+    let determinant = determinant(deviator);
     let newton_step = |u: R| {
         let t = R::of(1.0) + u;
         (u * (three + u * (three + u)) - p * t + determinant) / (three * t * t - p)

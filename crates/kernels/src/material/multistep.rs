@@ -19,7 +19,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::j2::{
-    Response, determinant_minus_one, deviator, isochoric_factor_minus_one, isochoric_mean, norm_squared, return_mapping,
+    Response, determinant, determinant_minus_one, deviator, isochoric_factor_minus_one, isochoric_mean, norm_squared,
+    return_mapping,
 };
 use super::{Material, PointError, PointState};
 use crate::real::Real;
@@ -107,14 +108,12 @@ pub fn complete<R: Real>(
 #[inline]
 pub(crate) fn dissipated<R: Real>(be: &[R; 6]) -> R {
     let (strain, mean) = deviator(be);
-    let [xx, yy, zz, xy, yz, zx] = strain;
     let square = norm_squared(&strain);
     if !(square > R::ZERO) {
         return R::ONE;
     }
-    let determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * zx) + zx * (xy * yz - yy * zx);
     let m = R::ONE + mean;
-    (m * m - R::of(3.0) * m * (determinant / square)) / (m * m - square * R::of(1.0 / 6.0))
+    (m * m - R::of(3.0) * m * (determinant(&strain) / square)) / (m * m - square * R::of(1.0 / 6.0))
 }
 
 /// The deviator of J^(-2/3) f a f^T with f = I + d.
