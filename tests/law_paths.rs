@@ -279,3 +279,70 @@ fn every_language_takes_the_same_way() {
         }
     }
 }
+
+/// A case over a plane or an equal sphere, with these segments after its press.
+fn path_of(opponent: &str, segments: &[&str]) -> Case {
+    let segments: String = segments.iter().map(|segment| format!("[[path]]\n{segment}\n")).collect();
+    let text = format!(
+        "[sphere]\nradius = 2.0\n[material]\nyoungs_modulus = 200e3\npoissons_ratio = 0.3\n[material.hardening]\nlaw = \"ideal\"\n\
+         yield_stress = 400.0\n[contact]\nfriction = 0.3\n{opponent}[[path]]\nindentation = 0.04\n{segments}"
+    );
+    Case::parse(&text, "case.toml", &[]).expect("a case")
+}
+
+/// Along a path in another direction a law says what it says along x, turned; of the plane and of
+/// two spheres, F_N held and not, to full slip and back, and after a release.
+#[test]
+fn a_law_follows_a_path_in_any_direction() {
+    let law = LawFile::built_in().expect("the built-in law");
+    let (cos, sin) = (28.0 / 53.0, 45.0 / 53.0);
+    let degrees = f64::atan2(sin, cos).to_degrees();
+    let held = "\nhold = \"normal-force\"";
+    for opponent in ["", "[opponent]\nequal = true\n"] {
+        let to = |d: f64, hold: &str| [format!("shear = {d:?}{hold}"), format!("shear = [{:?}, {:?}]{hold}", d * cos, d * sin)];
+        let both = [
+            to(0.002, ""),
+            to(-0.001, held),
+            ["release = 0.5".to_owned(), "release = 0.5".to_owned()],
+            [
+                "indentation = 0.05\nshear = 0.002".to_owned(),
+                format!("indentation = 0.05\nshear = [{:?}, {:?}]", 0.002 * cos, 0.002 * sin),
+            ],
+            ["shear = \"full-slip\"".to_owned(), format!("shear = \"full-slip\"\nshear_direction = {degrees:?}")],
+            ["release = true".to_owned(), "release = true".to_owned()],
+        ];
+        let follow = |k: usize| {
+            let segments: Vec<&str> = both.iter().map(|pair| pair[k].as_str()).collect();
+            law.follow(&path_of(opponent, &segments)).expect("a prediction").0
+        };
+        let (along, turned) = (follow(0), follow(1));
+        let greatest = along.iter().fold(0.0, |most: f64, point| most.max(point.f_n));
+        let slides = along.iter().fold(0.0, |most: f64, point| most.max(point.f_t));
+        assert!(slides > 0.2 * greatest && along.last().is_some_and(|point| point.f_n.abs() < 1e-9 * greatest));
+        assert_eq!(along.len(), turned.len(), "{opponent}");
+        for (a, b) in along.iter().zip(&turned) {
+            let way = [b.delta_t * cos + b.delta_t_y * sin, b.delta_t_y * cos - b.delta_t * sin];
+            let force = [b.f_t * cos + b.f_t_y * sin, b.f_t_y * cos - b.f_t * sin];
+            assert!((way[0] - a.delta_t).abs() < 1e-12 && way[1].abs() < 1e-12, "{a:?} {b:?}");
+            let off = [b.f_n - a.f_n, force[0] - a.f_t, force[1]].map(|x| x.abs() / greatest);
+            assert!(off.iter().all(|off| *off < 1e-4), "{opponent}: {off:?} {a:?} {b:?}");
+            assert_eq!((a.segment, a.f_t_y), (b.segment, 0.0));
+        }
+    }
+}
+
+/// A path that turns a corner: F_T follows the displacement, and where all slips it is mu F_N along
+/// the way. Twist and roll, of which no law says anything, are refused.
+#[test]
+fn a_law_turns_corners_and_refuses_twist_and_roll() {
+    let law = LawFile::built_in().expect("the built-in law");
+    let case = path_of("", &["shear = [0.01, 0.0]", "shear = \"full-slip\"\nshear_direction = 90.0"]);
+    let (points, _) = law.follow(&case).expect("a prediction");
+    let end = points.last().expect("points");
+    assert!(end.slips && end.delta_t == 0.01 && end.delta_t_y > 0.0);
+    assert!((end.f_t_y / (0.3 * end.f_n) - 1.0).abs() < 0.01 && end.f_t.abs() < 0.1 * end.f_t_y, "{end:?}");
+    for segment in ["twist = 0.1", "roll = 0.1", "shear = [0.01, 0.0]\nroll = [0.1, 0.0]"] {
+        let refused = law.follow(&path_of("", &[segment])).expect_err(segment).to_string();
+        assert!(refused.contains("twists or rolls"), "{refused}");
+    }
+}

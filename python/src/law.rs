@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use asperity::Canceller;
+use asperity::case::Segment;
 use asperity::contact_law::path::PathPoint;
 use asperity::law::check::{Checked, check, protocol};
 use asperity::law::data::Point;
@@ -168,6 +169,10 @@ impl NativeLaw {
         columns.set_item("delta_T", column(|point| point.delta_t))?;
         columns.set_item("F_N", column(|point| point.f_n))?;
         columns.set_item("F_T", column(|point| point.f_t))?;
+        if case.path.iter().any(Segment::leaves_x) {
+            columns.set_item("delta_T_y", column(|point| point.delta_t_y))?;
+            columns.set_item("F_T_y", column(|point| point.f_t_y))?;
+        }
         Ok((columns, outside.iter().map(ToString::to_string).collect()))
     }
 
@@ -266,7 +271,8 @@ impl NativeLaw {
             return Err(refused("press: is True, and the law has no formulas that take F_N0 and a0. Allowed: False"));
         };
         let Prediction { curve, out_of_range, inputs, .. } = predict(law, case, NormalSource::Press).map_err(failed)?;
-        let point = |p: &Point| PathPoint { segment: 1, h: inputs.h, delta_t: p.delta_t, f_n: p.f_n, f_t: p.f_t, slips: false };
+        let point =
+            |p: &Point| PathPoint { segment: 1, h: inputs.h, delta_t: p.delta_t, f_n: p.f_n, f_t: p.f_t, ..PathPoint::default() };
         Ok((curve.iter().map(point).collect(), out_of_range))
     }
 }

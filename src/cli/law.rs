@@ -15,7 +15,7 @@ use super::law_compose::{ComposeArgs, compose_tables};
 use super::law_export::{ExportArgs, export_law};
 use super::law_tabulate::{TabulateArgs, tabulate};
 use super::{CliError, Exit, print, print_json};
-use crate::case::Case;
+use crate::case::{Case, Segment};
 use crate::contact_law::path::PathPoint;
 use crate::law::file::BUILT_IN;
 use crate::law::formulas::fit::fit;
@@ -239,33 +239,38 @@ fn predict_case(args: &PredictArgs) -> Result<Exit, CliError> {
     let (points, out_of_range) = if args.press { pressed(&law, &case, &args.law) } else { law.follow(&case) }.map_err(in_case)?;
     warn_out_of_range(Path::new(&name), &out_of_range);
     if args.json {
-        print_json(&as_json(&points, &out_of_range))?;
+        print_json(&as_json(&points, case.path.iter().any(Segment::leaves_x), &out_of_range))?;
         return Ok(Exit::Done);
     }
-    let mut text = String::from("segment,h,delta_T,F_N,F_T\n");
+    let leaves_x = case.path.iter().any(Segment::leaves_x);
+    let mut text = String::from("segment,h,delta_T,F_N,F_T");
+    text.push_str(if leaves_x { ",delta_T_y,F_T_y\n" } else { "\n" });
     for point in &points {
-        let numbers = [point.h, point.delta_t, point.f_n, point.f_t].map(decimal);
-        let _ = writeln!(text, "{},{}", point.segment, numbers.join(","));
+        let numbers = [point.h, point.delta_t, point.f_n, point.f_t, point.delta_t_y, point.f_t_y].map(decimal);
+        let told = if leaves_x { numbers.as_slice() } else { &numbers[..4] };
+        let _ = writeln!(text, "{},{}", point.segment, told.join(","));
     }
     print(&text)?;
     Ok(Exit::Done)
 }
 
-fn as_json(points: &[PathPoint], out_of_range: &[OutOfRange]) -> Value {
+fn as_json(points: &[PathPoint], leaves_x: bool, out_of_range: &[OutOfRange]) -> Value {
     let column = |of: fn(&PathPoint) -> f64| points.iter().map(of).collect::<Vec<f64>>();
     let outside = out_of_range.iter().map(
         |OutOfRange { quantity, value, range }| json!({ "quantity": quantity, "value": value, "from": range.from, "to": range.to }),
     );
-    json!({
-        "curve": {
-            "segment": points.iter().map(|p| p.segment).collect::<Vec<_>>(),
-            "h": column(|p| p.h),
-            "delta_T": column(|p| p.delta_t),
-            "F_N": column(|p| p.f_n),
-            "F_T": column(|p| p.f_t)
-        },
-        "out_of_range": outside.collect::<Vec<_>>(),
-    })
+    let mut curve = json!({
+        "segment": points.iter().map(|p| p.segment).collect::<Vec<_>>(),
+        "h": column(|p| p.h),
+        "delta_T": column(|p| p.delta_t),
+        "F_N": column(|p| p.f_n),
+        "F_T": column(|p| p.f_t)
+    });
+    if leaves_x {
+        curve["delta_T_y"] = json!(column(|p| p.delta_t_y));
+        curve["F_T_y"] = json!(column(|p| p.f_t_y));
+    }
+    json!({ "curve": curve, "out_of_range": outside.collect::<Vec<_>>() })
 }
 
 /// One shear from a simulated press.
@@ -280,7 +285,7 @@ fn pressed(law: &LawFile, case: &Case, path: &Path) -> Result<(Vec<PathPoint>, V
         delta_t: p.delta_t,
         f_n: p.f_n,
         f_t: p.f_t,
-        slips: false,
+        ..PathPoint::default()
     };
     Ok((curve.iter().map(point).collect(), out_of_range))
 }

@@ -3,7 +3,7 @@
 use super::ContactParameters;
 use super::centres::Centres;
 use super::state::{ContactResponse, ContactState};
-use crate::case::{Hold, Segment, ShearTarget};
+use crate::case::{Hold, Motion, Segment, ShearTarget, unit};
 
 /// A place on a path, in the units of the parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,12 +12,16 @@ pub struct PathPoint {
     pub segment: usize,
     /// Indentation h.
     pub h: f64,
-    /// Tangential displacement delta_T.
+    /// Tangential displacement delta_T along x.
     pub delta_t: f64,
+    /// The same along y.
+    pub delta_t_y: f64,
     /// Normal force F_N.
     pub f_n: f64,
-    /// Tangential force F_T along delta_T.
+    /// Tangential force F_T along x.
     pub f_t: f64,
+    /// The same along y.
+    pub f_t_y: f64,
     /// Whether the contact slips as a whole: F_T has come to mu F_N in its own frame.
     pub slips: bool,
 }
@@ -89,7 +93,8 @@ struct Follower<'a> {
     force: [f64; 3],
     /// Work so far, by the trapezoidal rule.
     work: f64,
-    direction: f64,
+    /// Direction of the last shear, along x and y.
+    way: [f64; 2],
     number: usize,
     points: Vec<PathPoint>,
 }
@@ -106,32 +111,31 @@ impl<'a> Follower<'a> {
             across: 0.0,
             force: [0.0; 3],
             work: 0.0,
-            direction: 1.0,
+            way: [1.0, 0.0],
             number: 0,
             points: Vec::new(),
         }
     }
 
     fn tell(&mut self) {
-        let [f_n, f_t, _] = self.force;
+        let [f_n, f_t, f_t_y] = self.force;
+        let Self { number: segment, h, delta_t, across: delta_t_y, .. } = *self;
+        self.points.push(PathPoint { segment, h, delta_t, delta_t_y, f_n, f_t, f_t_y, slips: self.slips() });
+    }
+
+    /// Whether F_T has come to mu F_N.
+    fn slips(&self) -> bool {
         let limit = self.parameters.friction * self.out.f_n;
-        let slips = limit > 0.0 && self.out.f_t[0].abs() >= SLIPPING * limit;
-        self.points.push(PathPoint { segment: self.number, h: self.h, delta_t: self.delta_t, f_n, f_t, slips });
+        let [x, y] = self.out.f_t;
+        let f_t = if y == 0.0 { x.abs() } else { x.hypot(y) };
+        limit > 0.0 && f_t >= SLIPPING * limit
     }
 
-    /// The answer at a place of the same delta_T along y, and its F_N and F_T along the fixed axes.
-    fn ask(&self, h: f64, delta_t: f64) -> (ContactState, ContactResponse, [f64; 3]) {
-        self.ask_at([h, delta_t, self.across])
-    }
-
+    /// The answer at a place, and its F_N and F_T along the fixed axes.
     fn ask_at(&self, place: [f64; 3]) -> (ContactState, ContactResponse, [f64; 3]) {
         let slid = self.centres.slid([self.h, self.delta_t, self.across], place);
         let (state, out) = self.parameters.update(&self.state, self.centres.overlap_at(place), slid);
         (state, out, self.centres.along_fixed_axes(place, [out.f_n, out.f_t[0], out.f_t[1]]))
-    }
-
-    fn step(&mut self, h: f64, delta_t: f64) {
-        self.step_to([h, delta_t, self.across]);
     }
 
     fn step_to(&mut self, place: [f64; 3]) {
@@ -165,26 +169,52 @@ impl<'a> Follower<'a> {
         match *segment {
             Segment::Indentation { indentation } => self.towards(indentation, at, STEPS, 1.5),
             Segment::Oblique { indentation, shear } => {
-                self.turn(shear);
+                self.turn([shear, self.across]);
                 self.towards(indentation, shear, 2 * STEPS, 1.5);
             }
             Segment::Release { share } => self.release(share),
-            Segment::Shear { shear, hold } => self.shear(shear, hold == Hold::NormalForce),
-            // Refused by `law::LawFile::follow`.
-            Segment::Motion { .. } | Segment::Slip { .. } => {}
+            Segment::Shear { shear: ShearTarget::Displacement(d), hold } => self.shear_to([d, self.across], hold),
+            Segment::Shear { shear: ShearTarget::FullSlip, hold } => {
+                // On along x, forward if it has not been sheared so.
+                self.way = [if self.way[0] < 0.0 { -1.0 } else { 1.0 }, 0.0];
+                self.shear(None, hold);
+            }
+            Segment::Slip { direction, hold } => {
+                self.way = unit(direction);
+                self.shear(None, hold);
+            }
+            Segment::Motion { to: Motion { indentation: None, shear: Some(end), .. }, hold } => self.shear_to(end, hold),
+            Segment::Motion { to: Motion { indentation: Some(h), shear: Some(end), .. }, .. } => {
+                self.turn(end);
+                self.straight_to([h, end[0], end[1]], 2 * STEPS, 1.5);
+            }
+            Segment::Motion { to: Motion { indentation, .. }, .. } => {
+                // What turns is refused by `law::LawFile::follow`.
+                if let Some(h) = indentation {
+                    self.towards(h, at, STEPS, 1.5);
+                }
+            }
         }
     }
 
-    fn turn(&mut self, to: f64) {
-        self.direction = (to - self.delta_t).signum();
+    /// Sets out for a delta_T along x and y; how far it is.
+    fn turn(&mut self, to: [f64; 2]) -> f64 {
+        let [x, y] = [to[0] - self.delta_t, to[1] - self.across];
+        if y == 0.0 {
+            self.way = [x.signum(), 0.0];
+            return x.abs();
+        }
+        let length = x.hypot(y);
+        self.way = [x / length, y / length];
+        length
     }
 
-    /// The indentation between `low` and `high` at which the next increment ends with the normal
-    /// force `wanted`; F_N rises with h.
-    fn meet(&self, wanted: f64, delta_t: f64, mut low: f64, mut high: f64) -> f64 {
+    /// The indentation between `low` and `high` at which the next increment, to `delta_t` along x
+    /// and y, ends with the normal force `wanted`; F_N rises with h.
+    fn meet(&self, wanted: f64, [x, y]: [f64; 2], mut low: f64, mut high: f64) -> f64 {
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
-            let (.., [f_n, ..]) = self.ask(middle, delta_t);
+            let (.., [f_n, ..]) = self.ask_at([middle, x, y]);
             if f_n < wanted { low = middle } else { high = middle }
         }
         0.5 * (low + high)
@@ -195,47 +225,47 @@ impl<'a> Follower<'a> {
         if !(self.out.f_n > 0.0) {
             return;
         }
-        let from = self.h;
+        let (from, at) = (self.h, [self.delta_t, self.across]);
+        let aside = if at[1] == 0.0 { at[0] } else { at[0].hypot(at[1]) };
         // A little beyond where contact is lost, so that rounding leaves no force.
-        let end = self.centres.indentation(self.state.h - (1.0 + 1e-12) * self.state.approach, self.delta_t);
-        let end = if share > 0.0 { self.meet(share * self.force[0], self.delta_t, end, from) } else { end };
+        let end = self.centres.indentation(self.state.h - (1.0 + 1e-12) * self.state.approach, aside);
+        let end = if share > 0.0 { self.meet(share * self.force[0], at, end, from) } else { end };
         self.towards(end, self.delta_t, STEPS, 1.0);
     }
 
-    fn shear(&mut self, target: ShearTarget, held: bool) {
+    fn shear_to(&mut self, end: [f64; 2], hold: Hold) {
+        let length = self.turn(end);
+        self.shear(Some((end, length)), hold);
+    }
+
+    /// Shears on along `way` to an end at this length, or to full slip.
+    fn shear(&mut self, end: Option<([f64; 2], f64)>, hold: Hold) {
         let slip = if self.state.h_max > 0.0 { self.parameters.virgin(self.state.h_max).point.delta_t_slip } else { 0.0 };
-        let length = match target {
-            ShearTarget::Displacement(d) => {
-                self.turn(d);
-                (d - self.delta_t).abs()
-            }
-            ShearTarget::FullSlip => f64::INFINITY,
-        };
         if !(slip > 0.0) {
             // Nothing touches: it moves freely.
-            if let ShearTarget::Displacement(d) = target {
-                self.step(self.h, d);
+            if let Some(([x, y], _)) = end {
+                self.step_to([self.h, x, y]);
                 self.tell();
             }
             return;
         }
-        let (start, f_n, direction) = (self.delta_t, self.force[0], self.direction);
+        let (start, f_n, way) = ([self.delta_t, self.across], self.force[0], self.way);
+        let length = end.map_or(f64::INFINITY, |(_, length)| length);
         for i in 1..=(MOST_SLIPS + 1) * STEPS {
             let distance =
                 if i <= STEPS { length.min(slip) * (i as f64 / STEPS as f64).powi(2) } else { slip * i as f64 / STEPS as f64 };
             let last = distance >= length * (1.0 - 1e-12) || i == (MOST_SLIPS + 1) * STEPS && length.is_finite();
-            let delta_t = match target {
-                ShearTarget::Displacement(d) if last => d,
-                _ => start + direction * distance,
+            let [x, y] = match end {
+                Some((end, _)) if last => end,
+                _ => [start[0] + way[0] * distance, start[1] + way[1] * distance],
             };
-            let h = if held { self.holding(f_n, delta_t) } else { self.h };
+            let h = if hold == Hold::NormalForce { self.holding(f_n, [x, y]) } else { self.h };
             let before = self.out.f_n;
-            self.step(h, delta_t);
+            self.step_to([h, x, y]);
             self.tell();
-            let slips = self.out.f_t[0].abs() >= SLIPPING * self.parameters.friction * self.out.f_n;
             // As two spheres pass each other F_N falls on with the overlap.
             let stands = self.centres.frame().is_some() || (before - self.out.f_n).abs() <= 1e-9 * before;
-            let settled = i >= STEPS && slips && stands;
+            let settled = i >= STEPS && self.slips() && stands;
             if last || length.is_infinite() && settled {
                 return;
             }
@@ -243,11 +273,11 @@ impl<'a> Follower<'a> {
     }
 
     /// The indentation that keeps F_N.
-    fn holding(&self, wanted: f64, delta_t: f64) -> f64 {
+    fn holding(&self, wanted: f64, delta_t: [f64; 2]) -> f64 {
         if !(wanted > 0.0) {
             return self.h;
         }
-        let falls = |h: f64| self.ask(h, delta_t).2[0] < wanted;
+        let falls = |h: f64| self.ask_at([h, delta_t[0], delta_t[1]]).2[0] < wanted;
         let h = self.h;
         let mut reach = 1e-3 * self.parameters.virgin(self.state.h_max).depth;
         if falls(h) {

@@ -11,7 +11,7 @@ use super::range::OutOfRange;
 use super::table::{self, Tabulated};
 use super::variables::Body;
 use super::{Law, LawError};
-use crate::case::{Case, Friction, Segment};
+use crate::case::{Case, Friction};
 use crate::contact_law::path::{PathPoint, follow_centres};
 use crate::contact_law::{Centres, ContactParameters};
 
@@ -120,15 +120,9 @@ impl LawFile {
     /// a simulation all is along fixed axes, also where two spheres pass each other.
     ///
     /// # Errors
-    /// Those of [`LawFile::contact_parameters`].
+    /// Those of [`LawFile::contact_parameters`] and [`refuse_turns`].
     pub fn follow(&self, case: &Case) -> Result<(Vec<PathPoint>, Vec<OutOfRange>), LawError> {
-        if case.turns() || !case.is_even() || case.path.iter().any(|segment| matches!(segment, Segment::Slip { .. })) {
-            return Err(LawError::NotCovered {
-                problem: "the case turns the sphere, or shears it across the x axis, and laws are driven along x",
-                remedy: "Give the path segments of indentation, of shear as a number and of release, or simulate the case with \
-                         `asperity run`",
-            });
-        }
+        refuse_turns(case)?;
         let points = follow_centres(&self.contact_parameters(case)?, Centres::of(case), &case.path);
         let deepest = points.iter().map(|point| point.h).fold(0.0, f64::max);
         let out_of_range = if deepest > 0.0 { self.out_of_range(case, deepest)? } else { Vec::new() };
@@ -163,4 +157,18 @@ impl LawFile {
             Self::Interpolated(law) => law.out_of_range(case, h),
         }
     }
+}
+
+/// Refuses a case that twists or rolls the sphere.
+///
+/// # Errors
+/// [`LawError::NotCovered`].
+pub fn refuse_turns(case: &Case) -> Result<(), LawError> {
+    if !case.turns() {
+        return Ok(());
+    }
+    Err(LawError::NotCovered {
+        problem: "the case twists or rolls the sphere, of which no law says anything",
+        remedy: "Leave out twist and roll, or simulate the case with `asperity run`",
+    })
 }

@@ -2,7 +2,8 @@
 
 use crate::case::Case;
 use crate::contact_law::Centres;
-use crate::contact_law::path::{PathPoint, drive_centres};
+use crate::contact_law::path::{PathPoint, drive_in_the_plane};
+use crate::law::file::refuse_turns;
 use crate::law::formulas::normal::NormalState;
 use crate::law::formulas::predict::{NormalSource, Prediction, predict};
 use crate::law::range::OutOfRange;
@@ -32,8 +33,9 @@ pub fn beside_run(
 /// A point of a law's path as a step of a run: a law knows one point of contact, which slips or
 /// does not.
 pub fn as_step(point: &PathPoint) -> StepRecord {
-    let PathPoint { segment, h, delta_t, f_n, f_t, slips } = *point;
-    StepRecord { segment, h, delta_t, f_n, f_t, contact_points: 1, slipping_points: usize::from(slips), ..StepRecord::default() }
+    let PathPoint { segment, h, delta_t, delta_t_y, f_n, f_t, f_t_y, slips } = *point;
+    let record = StepRecord { segment, h, delta_t, delta_t_y, f_n, f_t, f_t_y, ..StepRecord::default() };
+    StepRecord { contact_points: 1, slipping_points: usize::from(slips), ..record }
 }
 
 /// The forces of a run with those of the contact update along the same places, whatever the path.
@@ -46,12 +48,13 @@ pub fn table_beside_run(
     history: &[StepRecord],
     view: &View,
 ) -> Result<(Picture, Vec<OutOfRange>), LawError> {
+    refuse_turns(case)?;
     let parameters = law.contact_parameters(case)?;
-    let places: Vec<[f64; 2]> = history.iter().map(|record| [record.h, record.delta_t]).collect();
-    let forces = drive_centres(&parameters, Centres::of(case), &places, 8);
-    let points = places.iter().zip(forces).map(|(place, [f_n, f_t])| [place[1], f_t, f_n]);
+    let places: Vec<[f64; 3]> = history.iter().map(|record| [record.h, record.delta_t, record.delta_t_y]).collect();
+    let (forces, _) = drive_in_the_plane(&parameters, Centres::of(case), &places, 8);
+    let points = places.iter().zip(forces).map(|(place, [f_n, f_t, _])| [place[1], f_t, f_n]);
     // From where the shear begins, as the simulation is drawn.
-    let pressed = places.windows(2).take_while(|pair| pair[1][1] == pair[0][1]).count();
+    let pressed = places.windows(2).take_while(|pair| pair[1][1..] == pair[0][1..]).count();
     let curve: Vec<[f64; 3]> = points.skip(pressed).collect();
     let deepest = places.iter().map(|place| place[0]).fold(0.0, f64::max);
     let picture = plot_law(history, &[("law, from h and δ_T".to_owned(), curve)], view)?;
