@@ -39,7 +39,8 @@ pub fn check() {
     let grid = scratch.path("study.toml");
     let text = fs::read_to_string("fixtures/studies/small.toml").expect("a study");
     let (base, _) = text.split_once("[grid]").expect("a grid");
-    let base = base.replace("elements_per_contact_radius = 5", "elements_per_contact_radius = 4");
+    let base = base
+        .replace("elements_per_contact_radius = 5\nsurface_elements_per_contact_radius = 10", "elements_per_contact_radius = 4");
     fs::write(&grid, format!("{base}[grid]\n\"contact.friction\" = [0.2]\n")).expect("a study");
     let output = asperity(&["study", &grid.to_string_lossy(), "--out", &study.to_string_lossy(), "-q"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));

@@ -7,7 +7,7 @@ use std::path::Path;
 use asperity::case::Case;
 use asperity::law::Law;
 use asperity::law::formulas::predict::{NormalSource, predict};
-use asperity::output::read_history;
+use asperity::output::{StepRecord, read_history};
 
 use super::{asperity, text};
 
@@ -26,9 +26,12 @@ const UNSEEN: [[f64; 3]; 10] = [
     [2240.0, 0.163, 0.0057],
 ];
 
-/// The study's base case with other values.
+/// The study's base case with other values, on the default mesh.
 fn case_text(study: &str, [yield_stress, friction, indentation]: [f64; 3]) -> String {
     let base = study.split("[grid]").next().expect("a base").replace("base.", "");
+    let mesh = "[mesh]\nelements_per_contact_radius = 5\nsurface_elements_per_contact_radius = 10\n";
+    assert!(base.contains(mesh));
+    let base = base.replace(mesh, "");
     let set = |text: String, from: &str, to: String| {
         assert_eq!(text.matches(from).count(), 1, "{from}");
         text.replace(from, &to)
@@ -39,20 +42,22 @@ fn case_text(study: &str, [yield_stress, friction, indentation]: [f64; 3]) -> St
 }
 
 /// (rms, greatest) of F_T as a share of its peak and of F_N as a share of F_N0, the prediction
-/// being from h alone.
+/// being from h alone and the simulation at the limit of fine meshes.
 fn errors(law: &Law, case: &Path, run: &Path) -> [[f64; 2]; 2] {
     let case = Case::load(case, &[]).expect("a case");
     let prediction = predict(law, &case, NormalSource::Formulas).expect("a prediction");
     assert!(prediction.out_of_range.is_empty(), "{:?}", prediction.out_of_range);
     let history = read_history(&run.join("history.csv")).expect("a history");
     let f_n0 = history.iter().rfind(|record| record.segment == 0).expect("a press").f_n;
-    let shear: Vec<_> = history.iter().filter(|record| record.segment == 1).collect();
-    let peak = shear.iter().fold(0.0_f64, |peak, record| peak.max(record.f_t));
+    let limit = |record: &StepRecord| Some((record.delta_t, record.f_t_limit?, record.f_n_limit?));
+    let shear: Vec<_> = history.iter().filter(|record| record.segment == 1).filter_map(limit).collect();
+    assert!(shear.len() > 8, "{} steps with a limit", shear.len());
+    let peak = shear.iter().fold(0.0_f64, |peak, (_, f_t, _)| peak.max(*f_t));
     let mu = prediction.inputs.friction;
     let differences: Vec<[f64; 2]> = std::iter::once([0.0, (prediction.inputs.f_n - f_n0) / f_n0])
-        .chain(shear.iter().map(|record| {
-            let (f_t, f_n) = law.forces(&prediction.parameters, mu, record.delta_t);
-            [(f_t - record.f_t) / peak, (f_n - record.f_n) / f_n0]
+        .chain(shear.iter().map(|&(delta_t, f_t_limit, f_n_limit)| {
+            let (f_t, f_n) = law.forces(&prediction.parameters, mu, delta_t);
+            [(f_t - f_t_limit) / peak, (f_n - f_n_limit) / f_n0]
         }))
         .collect();
     [0, 1].map(|i| {
@@ -82,16 +87,16 @@ fn a_small_study_predicts_cases_that_it_never_saw() {
         let (case, run) = (folder.path().join(format!("{i}.toml")), folder.path().join(format!("run{i}")));
         fs::write(&case, case_text(&source, values)).expect("a case");
         asperity(&["run", text(&case), "--out", text(&run), "--device", "cpu"]).code(0);
-        // Measured: up to 5.3 % in F_T and 3.1 % in F_N without a prior, 5.3 and 3.0 % with it.
-        for (i, greatest) in [0.06, 0.056].into_iter().enumerate() {
+        // Measured: up to 11.0 % in F_T and 3.6 % in F_N without a prior, 11.6 and 2.9 % with it.
+        for i in 0..2 {
             let [f_t, f_n] = errors(&laws[i], &case, &run);
             println!("{values:?}: F_T rms {:.4} max {:.4}, F_N rms {:.4} max {:.4}", f_t[0], f_t[1], f_n[0], f_n[1]);
-            assert!(f_t[1] < greatest && f_n[1] < greatest, "law {i}, {values:?}: F_T {f_t:?}, F_N {f_n:?}");
+            assert!(f_t[1] < 0.125 && f_n[1] < 0.045, "law {i}, {values:?}: F_T {f_t:?}, F_N {f_n:?}");
             squares[i] = [squares[i][0] + f_t[0] * f_t[0], squares[i][1] + f_n[0] * f_n[0]];
         }
     }
-    // Over all curves 1.5 and 1.0 % without, 1.7 and 1.1 % with it.
+    // Over all curves 3.1 and 1.3 % without, 3.6 and 1.3 % with it.
     let rms = squares.map(|sums| sums.map(|sum| (sum / UNSEEN.len() as f64).sqrt()));
     println!("rms of F_T and F_N without a prior and with that of wear-2014: {rms:.4?}");
-    assert!(rms[0].iter().all(|&rms| rms < 0.025) && rms[1].iter().all(|&rms| rms < 0.02), "{rms:?}");
+    assert!(rms.iter().all(|[f_t, f_n]| *f_t < 0.04 && *f_n < 0.016), "{rms:?}");
 }
