@@ -23,7 +23,7 @@ fn rows(text: &str, settings: &[&str]) -> Vec<StepRecord> {
 #[test]
 fn a_force_that_is_held_by_one_shear_after_the_other_does_not_creep() {
     let strokes: String = (0..12).map(|i| format!(", {{shear={}, hold=\"normal-force\"}}", [4e-4, 0.0][i % 2])).collect();
-    let path = format!("path=[{{indentation=0.02}}{strokes}, {{indentation=0.021}}, {{shear=3e-4, hold=\"normal-force\"}}]");
+    let path = format!("path=[{{indentation=0.02}}{strokes}, {{indentation=0.023}}, {{shear=3e-4, hold=\"normal-force\"}}]");
     let settings = ["mesh.elements_per_contact_radius=4", "solver.press_steps=10", "solver.shear_steps=4", &path];
     let rows = rows(include_str!("../fixtures/cases/ideal.toml"), &settings);
     let pressed = |segment: usize| rows.iter().rfind(|row| row.segment == segment).expect("a press").f_n;

@@ -17,13 +17,15 @@ pub struct Bounds {
     state: f64,
     /// Of the tangent from differences of the force; none where rounding hides them.
     differences: Option<f64>,
+    /// Of a displacement, by which a point is moved over its yield surface.
+    rounding: f64,
 }
 
 impl Bounds {
     /// For a backend in f64.
-    pub const F64: Self = Self { force: 1e-12, tangent: 1e-12, state: 1e-12, differences: Some(1e-6) };
+    pub const F64: Self = Self { force: 1e-12, tangent: 1e-12, state: 1e-12, differences: Some(1e-6), rounding: 1e-14 };
     /// For one in f32.
-    pub const F32: Self = Self { force: 2e-5, tangent: 1e-4, state: 2e-5, differences: None };
+    pub const F32: Self = Self { force: 2e-5, tangent: 1e-4, state: 2e-5, differences: None, rounding: 2e-6 };
 }
 
 /// Strain of a first, committed step and of the trial step after it; the third number reverses the
@@ -37,6 +39,9 @@ const KINDS: [(&str, f64, f64, f64); 6] = [
     ("large strain", 1e-2, 4e-1, 0.0),
 ];
 const CELLS: [usize; 3] = [2, 2, 1];
+/// Change of a block, by the largest number, that rounding makes only where a point begins to
+/// yield.
+const JUMP: f64 = 5e-5;
 /// So many times what one displacement is rounded by are the forces of elements at a node.
 const ROUNDED: f64 = 4.0;
 
@@ -72,6 +77,30 @@ fn prepare<R: Real, B: Backend<R>>(backend: &B, models: &[CaseModel], kind: (&st
     Pair { ours, reference, trials }
 }
 
+/// Displacements times a number.
+fn scaled(trials: &[(usize, Vec<f64>)], by: f64) -> Vec<(usize, Vec<f64>)> {
+    trials.iter().map(|(case, u)| (*case, u.iter().map(|u| by * u).collect())).collect()
+}
+
+/// For each of our blocks the nearest of three: a tangent jumps where a point is within rounding of
+/// yielding, and is then that of a displacement which differs by rounding. Few points are.
+fn nearest(ours: &[[f64; 9]], references: [&[[f64; 9]]; 3]) -> Vec<[f64; 9]> {
+    let away = |a: &[f64; 9], b: &[f64; 9]| a.iter().zip(b).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+    let largest = references[0].iter().flatten().fold(0.0f64, |most, x| most.max(x.abs()));
+    let mut jumps = 0;
+    let blocks = ours.iter().enumerate().map(|(i, block)| {
+        let first = references[0][i];
+        let others = references.map(|blocks| blocks[i]);
+        let best =
+            others.into_iter().fold(first, |best, other| if away(block, &other) < away(block, &best) { other } else { best });
+        jumps += usize::from(away(&best, &first) > JUMP * largest);
+        best
+    });
+    let blocks = blocks.collect();
+    assert!(jumps <= 8 * 8, "{jumps} of {} blocks jump: more than an element", ours.len());
+    blocks
+}
+
 /// Element forces and tangents are those of the reference, on every mesh.
 pub fn forces_and_tangents_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
     every_mesh(CELLS).iter().for_each(|models| forces_and_tangents_agree_on::<R, B>(backend, bounds, models));
@@ -83,10 +112,12 @@ fn forces_and_tangents_agree_on<R: Real, B: Backend<R>>(backend: &B, bounds: &Bo
         let Pair { mut ours, mut reference, trials } = prepare(backend, models, kind, seed);
         let (f, g) = (forces(ours.as_mut(), &trials), forces(reference.as_mut(), &trials));
         let (k, l) = (tangents(ours.as_mut(), &trials), tangents(reference.as_mut(), &trials));
+        let [below, above] = [-1.0, 1.0].map(|side| tangents(reference.as_mut(), &scaled(&trials, 1.0 + side * bounds.rounding)));
         for case in 0..trials.len() {
             assert_eq!((f[case].0, g[case].0, k[case].0), (Outcome::Valid, Outcome::Valid, Outcome::Valid), "{}", kind.0);
             let force = difference(&f[case].1, &g[case].1);
-            let tangent = difference(k[case].1.iter().flatten(), l[case].1.iter().flatten());
+            let nearest = nearest(&k[case].1, [&l[case].1, &below[case].1, &above[case].1]);
+            let tangent = difference(k[case].1.iter().flatten(), nearest.iter().flatten());
             assert!(force <= bounds.force, "{} {}, case {case}: force {force:e}", R::NAME, kind.0);
             assert!(tangent <= bounds.tangent, "{} {}, case {case}: tangent {tangent:e}", R::NAME, kind.0);
             (worst_force, worst_tangent) = (worst_force.max(force), worst_tangent.max(tangent));

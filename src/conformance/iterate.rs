@@ -47,7 +47,8 @@ pub struct Pressed {
     /// The device.
     pub gpu: Gpu<f64>,
     cpu: Cpu<f64>,
-    models: Vec<CaseModel>,
+    /// The cases.
+    pub models: Vec<CaseModel>,
     displacement: Vec<Vec<f64>>,
 }
 
@@ -112,9 +113,10 @@ pub fn reading(answer: &Reply) -> Reading {
     *reading
 }
 
-/// An iterate at the start of the step.
-pub fn begin() -> Ask {
-    Ask::Begin(Begin { from: From::Start, sliding: None })
+/// An iterate at the start of a step in which no contact point of a mesh slides under full stick,
+/// whatever slid in the step before.
+pub fn begin(mesh: &Mesh) -> Ask {
+    Ask::Begin(Begin { from: From::Start, sliding: Some(vec![false; mesh.contact_nodes.len()]) })
 }
 
 /// What the host makes of a trial at a displacement.
@@ -146,7 +148,7 @@ fn a_trial_reads_so_on(mut pressed: Pressed) {
             let mesh = pressed.models[case].mesh.clone();
             let control = Control { h: DEPTH + 1e-4, pose: Pose::along_x(2e-4), normal_force: held };
             let start = pressed.displacement[case].clone();
-            let at_start = reading(&ask(&mut pressed.gpu, &[(case, false, plate(&control), begin())])[0]);
+            let at_start = reading(&ask(&mut pressed.gpu, &[(case, false, plate(&control), begin(&mesh))])[0]);
             let (current, boundary) = on_host(&mut pressed, case, &start, control.h, &control);
             near("merit", at_start.merit, current.merit, current.merit);
             near("plate force", at_start.plate_force, current.plate_force, current.plate_force);
@@ -216,7 +218,7 @@ fn a_correction_solves_it_on(mut pressed: Pressed) {
             let (current, boundary) = on_host(&mut pressed, case, &start, control.h, &control);
             let target = 1.1 * current.plate_force;
             control.normal_force = held.then_some(target);
-            let begun = reading(&ask(&mut pressed.gpu, &[(case, false, plate(&control), begin())])[0]);
+            let begun = reading(&ask(&mut pressed.gpu, &[(case, false, plate(&control), begin(&mesh))])[0]);
             let asked = correct(1e-4, begun.plate_force);
             let found = corrected(&ask(&mut pressed.gpu, &[(case, false, plate(&control), asked)])[0]);
             assert_eq!((found.tangent, found.report.ended), (Outcome::Valid, Ended::Converged));

@@ -8,6 +8,7 @@ use asperity::internals::compute::iterate::{Ask, Correct, Corrected, Plate, Read
 use asperity::internals::compute::linear::Ended;
 use asperity::internals::compute::traffic::Traffic;
 use asperity::internals::conformance::iterate::{DEPTH, ask, begin, corrected, plate, pressed, reading};
+use asperity::internals::mesh::Mesh;
 use asperity::internals::solver::Control;
 use asperity::internals::solver::pose::Pose;
 use std::sync::Arc;
@@ -18,11 +19,11 @@ use std::sync::Arc;
 fn a_batch_reads_as_its_cases_alone_and_little_passes() {
     let Some(context) = device("a_batch_reads_as_its_cases_alone_and_little_passes", Precision::F64) else { return };
     let mut pressed = pressed(&Arc::new(context));
-    let gpu = &mut pressed.gpu;
+    let (gpu, mesh) = (&mut pressed.gpu, pressed.models[0].mesh.clone());
     for held in [None, Some(2e-4)] {
         let control = Control { h: DEPTH + 2e-4, pose: Pose::along_x(0.0), normal_force: held };
         let round = |gpu: &mut Gpu<f64>, cases: &[usize]| -> Vec<(Reading, Corrected)> {
-            let (answers, passed) = correct_from_start(gpu, cases, &control, 0.1, [12, 12]);
+            let (answers, passed) = correct_from_start(gpu, &mesh, cases, &control, 0.1, [12, 12]);
             let count = cases.len() as u64;
             assert!(passed.bytes_up <= 512 * count && passed.bytes_down <= 256 * count, "{passed:?} for {count}");
             assert!(passed.submissions <= 2 && passed.waits == 1, "{passed:?}");
@@ -48,12 +49,12 @@ fn a_batch_reads_as_its_cases_alone_and_little_passes() {
 fn a_list_that_is_too_short_changes_no_bit() {
     let Some(context) = device("a_list_that_is_too_short_changes_no_bit", Precision::F64) else { return };
     let mut pressed = pressed(&Arc::new(context));
-    let gpu = &mut pressed.gpu;
+    let (gpu, mesh) = (&mut pressed.gpu, pressed.models[0].mesh.clone());
     for held in [None, Some(2e-4)] {
         let control = Control { h: DEPTH + 2e-4, pose: Pose::along_x(0.0), normal_force: held };
-        let (expected, _) = correct_from_start(gpu, &[0, 1, 2], &control, 1e-3, [20, 20]);
+        let (expected, _) = correct_from_start(gpu, &mesh, &[0, 1, 2], &control, 1e-3, [20, 20]);
         for lists in [[0, 20], [20, 0], [0, 0]] {
-            let (found, passed) = correct_from_start(gpu, &[0, 1, 2], &control, 1e-3, lists);
+            let (found, passed) = correct_from_start(gpu, &mesh, &[0, 1, 2], &control, 1e-3, lists);
             let short = lists[0] == 0 || held.is_some();
             assert!(!short || passed.waits > 1, "{lists:?}: {passed:?}");
             assert_eq!(found, expected, "{lists:?}");
@@ -65,6 +66,7 @@ fn a_list_that_is_too_short_changes_no_bit() {
 /// and the response to the plate, and what passed on the way.
 fn correct_from_start(
     gpu: &mut Gpu<f64>,
+    mesh: &Mesh,
     cases: &[usize],
     control: &Control,
     tolerance: f64,
@@ -73,7 +75,7 @@ fn correct_from_start(
     let all = |ask: &dyn Fn(usize) -> Ask| -> Vec<(usize, bool, Plate, Ask)> {
         cases.iter().enumerate().map(|(i, &case)| (case, false, plate(control), ask(i))).collect()
     };
-    let begun: Vec<Reading> = ask(gpu, &all(&|_| begin())).iter().map(reading).collect();
+    let begun: Vec<Reading> = ask(gpu, &all(&|_| begin(mesh))).iter().map(reading).collect();
     let correct = |i: usize| {
         let plate_force = begun[i].plate_force;
         Ask::Correct(Correct { tolerance, expected, unit_tolerance: 0.1 * tolerance, unit_expected, first: true, plate_force })

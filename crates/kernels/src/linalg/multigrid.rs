@@ -166,6 +166,14 @@ impl Hierarchy {
         Some(OnLevel { matrix, inverse, b: &level.b, x: &level.x })
     }
 
+    /// Gives a level's matrix other numbers after an update; its smoother follows, coarser levels
+    /// do not. For comparisons with a device whose sums round otherwise.
+    pub fn alter_level(&mut self, l: usize, alter: impl FnOnce(&mut BlockMatrix<f32>)) {
+        let level = &mut self.levels[l];
+        alter(&mut level.smoother.matrix);
+        level.smoother.update(&vec![true; level.changed.len()]);
+    }
+
     /// z = one V-cycle's approximation of A^-1 v from zero. `v` must be zero at fixed unknowns; so
     /// is `z`.
     pub fn v_cycle<T: Real>(&mut self, v: &[T], z: &mut [f32]) {
