@@ -209,7 +209,7 @@ fn the_schemas_know_every_key_of_the_fixtures() {
     assert_eq!(schema["required"], serde_json::json!(["sphere", "material", "contact", "path"]));
     assert_eq!(schema["additionalProperties"], false);
     assert_eq!(schema["properties"]["mesh"]["properties"]["elements_per_contact_radius"]["maximum"], 32);
-    assert_eq!(schema["properties"]["solver"]["properties"]["tolerance"]["default"], 3e-4);
+    assert_eq!(schema["properties"]["solver"]["properties"]["tolerance"]["default"], 1e-4);
     let study = json(&asperity(&["schema", "study"]));
     assert_eq!(study["required"], serde_json::json!(["base"]));
     for sweep in ["grid", "zip", "list"] {

@@ -176,7 +176,7 @@ fn single_precision_follows_double() {
         let (n, t) = ((b.f_n - a.f_n) / a.f_n, (b.f_t - a.f_t) / a.f_n);
         assert!(n.abs() < 2e-6 && t.abs() < 2e-6, "step {}: {n:e} {t:e}", a.step);
     }
-    // Unloading makes points change status in another order; the default tolerance, 3e-4, is what
+    // Unloading makes points change status in another order; the default tolerance, 1e-4, is what
     // holds then. Contact is lost all the same, where f32 leaves residual forces that no normal
     // force outweighs.
     let problem = problem_of("reversal.toml", "output.plots=false");

@@ -7,8 +7,8 @@
 whole, against the same along x on the mesh of the half, step by step. (0 is the whole mesh along x: 1e-9 degrees.) The table
 has, for each mesh (elements inside, twice as many at the surface; with --same-surface as many), the differences of F_T along
 the path and of F_N, and F_T across the path, greatest / root mean square, in per cent of the greatest F_T and of F_N before
-the shear; the steps of the greatest ones; and how many steps there are. Steps are solved to 1e-5 of F_N: with the default of
-3e-4, single steps after a turn are off by 1 %. Standard library only. OUT gets the runs, and what is there is not computed
+the shear; the steps of the greatest ones; and how many steps there are. Steps are solved to 1e-5 of F_N: with 3e-4,
+single steps after a turn are off by 1 %. Standard library only. OUT gets the runs, and what is there is not computed
 again.
 """
 

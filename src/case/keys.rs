@@ -96,11 +96,11 @@ impl Key {
 /// The tables of a case file in the order in which they are written, with what each is about.
 pub const TABLES: [(&str, &str); 10] = [
     ("sphere", "the body"),
-    ("material", "what it is made of"),
-    ("material.hardening", "yield stress over equivalent plastic strain alpha"),
+    ("material", "what the body is made of"),
+    ("material.hardening", "yield stress as a function of the equivalent plastic strain alpha"),
     ("contact", "how the sphere meets the plane"),
-    ("opponent", "what the sphere is pressed against, if not a rigid plane"),
-    ("mesh", "how finely it is meshed; every key is optional"),
+    ("opponent", "what the sphere is pressed onto, if not a rigid plane"),
+    ("mesh", "how finely the bodies are meshed; every key is optional"),
     ("solver", "how the equations are solved; every key is optional"),
     ("output", "what is written besides history and summary; every key is optional"),
     ("units", "names of the units on the axes of pictures; they change no number, every key is optional"),
@@ -111,7 +111,7 @@ pub const TABLES: [(&str, &str); 10] = [
 pub const LAWS: [&str; 7] = HardeningLaw::WORDS;
 
 const UNIT_LABEL: &str = "1 to 16 letters";
-const UNIT_OMITTED: &str = "normalised axes; if only other units are named, axes in case units without a label";
+const UNIT_OMITTED: &str = "normalised axes if no unit is named, else axes labelled \"case's unit of length\" (force, stress)";
 const STRESS: &str = "stress";
 const LENGTH: &str = "length";
 
@@ -223,7 +223,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         unit: "pairs of a strain and a stress",
-        range: "alpha rising from 0, stress > 0 and never falling",
+        range: "alpha >= 0 and rising, from 0 unless yield_stress is given; stress > 0 and never falling",
         meaning: "points [alpha, stress], joined by straight lines; constant after the last",
         kind: Points,
         example: "[[0.0, 400.0], [0.05, 550.0], [0.3, 700.0]]",
@@ -237,29 +237,30 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true or false",
-        meaning: "press against an equal sphere. Indentation and shear in the case, and h and delta_T in the results, are \
-                  then the relative displacement of the two equators, twice that of each sphere, as are angles. Only \
-                  one sphere is meshed, unless the path rolls about y, or turns the spheres and leaves the x axis",
+        meaning: "press onto an equal sphere. Displacements and angles in the case and in the results are then relative: those \
+                  of one equator with respect to the other, twice those of each sphere if both move alike. Both spheres are \
+                  meshed if the path rolls about y, or if it both turns the spheres and leaves the x axis; otherwise only one \
+                  is",
         example: "true",
         ..key("opponent", "equal", Truth, Optional("a rigid plane"))
     },
     Key {
         range: "true or false, and not beside equal",
-        meaning: "press against a rigid sphere of the given radius; without a radius, against the rigid plane",
+        meaning: "press onto a rigid sphere of the given radius; without a radius, onto the rigid plane",
         example: "true",
         ..key("opponent", "rigid", Truth, Optional("a rigid plane"))
     },
     Key {
         unit: LENGTH,
         range: ">= 0.05 R if it is rigid, else 0.1 R to 10 R",
-        meaning: "radius of the opposing sphere; h must stay below 0.3 R*, with 1/R* = 1/R + 1/radius, or R* = radius if \
-                  the body is a flat",
+        meaning: "radius of the opposing sphere; h must stay below 0.3 R* and 0.3 R, with 1/R* = 1/R + 1/radius, or R* = \
+                  radius if the body is a flat",
         example: "2.0",
         ..key(
             "opponent",
             "radius",
             Number(AtLeast(1e-75), AtMost(1e75), &[]),
-            Optional("R if there is a material, else a rigid plane"),
+            Optional("as large as the sphere if the opponent has a material, else a rigid plane"),
         )
     },
     Key {
@@ -282,8 +283,8 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "4 to 32",
-        meaning: "number of elements along the contact radius. If only this number is given, it applies at the surface \
-                  too; a value of 8 then makes a quick run. The computing time grows as its 2.5th power",
+        meaning: "number of elements along the contact radius. If only this number is given, it applies at the surface too; a \
+                  value of 8 then makes a quick run. The computing time grows as the 2.5th power of this number",
         example: "10",
         ..key("mesh", "elements_per_contact_radius", Whole(4, 32), Defaults("10"))
     },
@@ -296,7 +297,7 @@ pub const KEYS: &[Key] = &[
             "mesh",
             "surface_elements_per_contact_radius",
             Whole(4, 64),
-            Optional("20, or elements_per_contact_radius if that is given"),
+            Optional("20; if elements_per_contact_radius is given, the same number"),
         )
     },
     Key {
@@ -322,9 +323,10 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: "share of the normal force",
         range: "> 1e-12 and <= 1e-2",
-        meaning: "residual at which a step is accepted; at 1e-3, F_T changes by 0.8 %",
-        example: "3e-4",
-        ..key("solver", "tolerance", Number(Above(1e-12), AtMost(1e-2), &[]), Defaults("3e-4"))
+        meaning: "residual at which a step is accepted; at 1e-3, F_T is off by up to 1.5 % in single steps after the path \
+                  changes direction",
+        example: "1e-4",
+        ..key("solver", "tolerance", Number(Above(1e-12), AtMost(1e-2), &[]), Defaults("1e-4"))
     },
     Key {
         range: "1 to 100000",
@@ -353,17 +355,18 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true or false",
-        meaning: "whether a coarser run is made first, in an eighth of the time. It gives the extrapolated limits and the \
-                  error estimates, and shows how large the contact becomes, so that the mesh fits. A study makes it only \
-                  if its base sets this key",
+        meaning: "whether a coarser run is made first, in an eighth of the time. The coarser run gives the extrapolated limits \
+                  and the error estimates, and shows how large the contact becomes, so that the mesh fits. A study makes this \
+                  run only if its base sets this key",
         example: "true",
         ..key("solver", "error_estimate", Truth, Defaults("true"))
     },
     Key {
         unit: "GiB",
         range: "> 0",
-        meaning: "memory that the mesh and the linear systems may take; a case that needs more is refused before it runs. \
-                  A value given here replaces the limit that the system reports. Without either, the limit is 8 GiB",
+        meaning: "memory that the mesh and the linear systems may take; a case that needs more is refused before it runs. A \
+                  value given here replaces the limit that the system reports. Without this key, and if the system reports \
+                  none, the limit is 8 GiB",
         example: "8.0",
         ..key("solver", "max_memory_gib", Number(Above(0.0), Free, &[]), Optional(ROOM))
     },
@@ -390,7 +393,7 @@ pub const KEYS: &[Key] = &[
         ..key("output", "plot_format", Word(&["svg", "pdf", "png"]), Optional("svg"))
     },
     Key {
-        range: "60 to 10000 px in mm, cm, in, pt or px, as in \"85mm\"",
+        range: "60 to 10000 px, given in mm, cm, in, pt or px, such as \"85mm\"",
         meaning: "width of the pictures; each is laid out anew, so that its text has the same size at any width",
         example: "\"85mm\"",
         ..key("output", "plot_width", Text, Optional("each has a width of its own"))
@@ -428,7 +431,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         unit: LENGTH,
-        range: ">= 0 and < 0.3 R, or 0.3 R* against a rigid sphere; the first one > 0, the greatest >= 2.5e-7 R^2/R*",
+        range: ">= 0, the first > 0; < 0.3 R, on any sphere but an equal one also < 0.3 R*; the greatest >= 2.5e-7 R^2/R*",
         meaning: "press to this indentation h, counted from first touch, or unload to it if it is smaller than the present \
                   h",
         example: "0.02",
@@ -438,8 +441,8 @@ pub const KEYS: &[Key] = &[
         unit: LENGTH,
         range: "-0.5 R to 0.5 R, [x, y] of such lengths, or \"full-slip\"",
         meaning: "shear to this total delta_T, of either sign. One number is along x. With [x, y] the shear has both \
-                  components, and the whole sphere is meshed instead of half of it. With \"full-slip\" it continues until \
-                  every point slips",
+                  components, and the whole sphere is meshed instead of half of it. With \"full-slip\" the shear continues \
+                  until every point slips",
         example: "\"full-slip\"",
         ..key("path", "shear", Components(&["full-slip"]), Optional("the segment presses, turns or releases"))
     },
@@ -466,8 +469,8 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: "rad",
         range: "-0.5 to 0.5, or [about_x, about_y] of such angles",
-        meaning: "roll the sphere to this total angle about y, of either sign, or to two angles about x and y; its centre \
-                  moves along, so that delta_T does not change",
+        meaning: "roll the sphere to this total angle about y, of either sign, or to two angles about x and y; the centre of \
+                  the sphere travels as it does in rolling without slip, so that delta_T does not change",
         example: "0.02",
         ..key("path", "roll", Components(&[]), Optional("the sphere does not roll"))
     },

@@ -375,7 +375,7 @@ impl Default for Solver {
     fn default() -> Self {
         Self {
             linear: Linear::Multigrid,
-            tolerance: 3e-4,
+            tolerance: 1e-4,
             press_steps: None,
             shear_steps: None,
             max_iterations: 25,

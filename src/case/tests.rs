@@ -30,7 +30,7 @@ fn the_reference_case_reads_with_the_documented_defaults() {
         },
         solver: Solver {
             linear: Linear::Multigrid,
-            tolerance: 3e-4,
+            tolerance: 1e-4,
             press_steps: None,
             shear_steps: None,
             max_iterations: 25,
