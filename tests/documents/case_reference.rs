@@ -22,6 +22,8 @@ the Kirchhoff stress: true stress times the ratio of present to original volume)
 On the command line, `--set KEY=VALUE` replaces a value. The key is dotted, and segments of the path count
 from 0: `--set path.0.indentation=0.01`.
 
+In the column *default*, \"none: X\" means that no value is set; a case without the key behaves as X says.
+
 A whole case:
 
 ```toml
@@ -63,9 +65,9 @@ Each segment has either `release`, or one or several of `indentation`, `shear`, 
 move in proportion. In a shear, twist or roll without `indentation`, `hold` says what stays constant.
 Displacements and angles are totals from first touch, not increments.
 
-The sphere's [equator](opponents.md) moves by them as a rigid body, and delta_T is the displacement of one
-surface on the other. Here the axes are fixed; an engine gives the same relative displacements in a [frame
-that moves with the contact](laws.md#the-frame-of-the-centres).
+They move the cut at the sphere's [equator](opponents.md) as a rigid plate. delta_T is the displacement of one
+surface relative to the other. The axes of a case are fixed; a DEM engine has the same relative displacements
+in a [frame that moves with the contact](laws.md#the-frame-of-the-centres).
 
 ```toml
 [[path]]
