@@ -128,12 +128,13 @@ fn fit_and_predict_through_the_program() {
     assert_eq!((end(3.0)[1], end(3.0)[2]), (0.022, -0.001));
     assert!(end(3.0)[4] < 0.0 && end(4.0)[3] == 0.0, "{:?} {:?}", end(3.0), end(4.0));
 
-    // The other way round, in the same units.
+    // In another direction.
     let aside = asperity(&["law", "predict", text(&law), text(&case), "--set", "path.1.shear=[6e-4, 8e-4]"]).code(0);
     let aside = String::from_utf8(aside.get_output().stdout.clone()).unwrap();
     let end: Vec<f64> = aside.lines().last().unwrap().split(',').map(|number| number.parse().unwrap()).collect();
     assert!(aside.starts_with("segment,h,delta_T,F_N,F_T,delta_T_y,F_T_y\n"), "{aside}");
     assert!((end[2], end[5]) == (6e-4, 8e-4) && (end[4] / end[6] - 0.75).abs() < 1e-3, "{end:?}");
+    // The other way round, in the same units.
     let back = asperity(&["law", "predict", text(&law), text(&case), "--set", "path.1.shear=-1e-3"]).code(0);
     let back = String::from_utf8_lossy(&back.get_output().stdout).into_owned();
     let end = back.lines().last().expect("rows").to_owned();

@@ -284,8 +284,8 @@ fn every_language_takes_the_same_way() {
 fn path_of(opponent: &str, segments: &[&str]) -> Case {
     let segments: String = segments.iter().map(|segment| format!("[[path]]\n{segment}\n")).collect();
     let text = format!(
-        "[sphere]\nradius = 2.0\n[material]\nyoungs_modulus = 200e3\npoissons_ratio = 0.3\n[material.hardening]\nlaw = \"ideal\"\n\
-         yield_stress = 400.0\n[contact]\nfriction = 0.3\n{opponent}[[path]]\nindentation = 0.04\n{segments}"
+        "[sphere]\nradius = 2.0\n[material]\nyoungs_modulus = 200e3\npoissons_ratio = 0.3\n[material.hardening]\n\
+         law = \"ideal\"\nyield_stress = 400.0\n[contact]\nfriction = 0.3\n{opponent}[[path]]\nindentation = 0.04\n{segments}"
     );
     Case::parse(&text, "case.toml", &[]).expect("a case")
 }

@@ -238,11 +238,11 @@ fn predict_case(args: &PredictArgs) -> Result<Exit, CliError> {
     let in_case = |source: LawError| CliError::LawCase { file: name.clone().into(), source: Box::new(source) };
     let (points, out_of_range) = if args.press { pressed(&law, &case, &args.law) } else { law.follow(&case) }.map_err(in_case)?;
     warn_out_of_range(Path::new(&name), &out_of_range);
+    let leaves_x = case.path.iter().any(Segment::leaves_x);
     if args.json {
-        print_json(&as_json(&points, case.path.iter().any(Segment::leaves_x), &out_of_range))?;
+        print_json(&as_json(&points, leaves_x, &out_of_range))?;
         return Ok(Exit::Done);
     }
-    let leaves_x = case.path.iter().any(Segment::leaves_x);
     let mut text = String::from("segment,h,delta_T,F_N,F_T");
     text.push_str(if leaves_x { ",delta_T_y,F_T_y\n" } else { "\n" });
     for point in &points {
