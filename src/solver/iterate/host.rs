@@ -315,9 +315,7 @@ impl Iterate for HostIterate {
         if outcome != Outcome::Valid {
             return Ok(reading);
         }
-        // Only the whole correction asks for it.
-        let slope = if length == 1.0 { self.slope(&self.candidate) } else { 0.0 };
-        Ok(Reading { slope, ..reading })
+        Ok(Reading { slope: self.slope(&self.candidate), ..reading })
     }
 
     fn favour(&mut self) {
