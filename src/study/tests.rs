@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
+use std::time::Duration;
 
 use super::batch::{Guest, share};
 use super::directory::{Earlier, StudyDirectory};
@@ -152,6 +153,57 @@ fn cases_that_share_a_backend_get_what_they_would_get_alone() {
     // Drives that wait together were served together.
     let (calls, largest) = (calls.load(Ordering::Relaxed), largest.load(Ordering::Relaxed));
     assert!(calls < evaluations && (2..=4).contains(&largest), "{calls} calls for {evaluations}, {largest} at once");
+}
+
+/// Takes its time for each call, and notes how many requests it had.
+struct Slow {
+    inner: Cpu<f64>,
+    sizes: Arc<Mutex<Vec<usize>>>,
+}
+
+const CALL: Duration = Duration::from_millis(100);
+
+impl Compute for Slow {
+    fn models(&self) -> &[CaseModel] {
+        self.inner.models()
+    }
+    fn about(&self) -> About {
+        self.inner.about()
+    }
+    fn call(&mut self, calls: Vec<(usize, Call)>) -> Result<Vec<Answer>, ComputeError> {
+        self.sizes.lock().unwrap().push(calls.len());
+        std::thread::sleep(CALL);
+        self.inner.call(calls)
+    }
+}
+
+/// Two of four begin while the first two are served. Each asks again as soon as it has its answer,
+/// so that they would take turns for ever; a call waits for them instead.
+#[test]
+fn cases_that_are_out_of_step_fall_into_it() {
+    let problems = problems();
+    let sizes = Arc::new(Mutex::new(Vec::new()));
+    let backend = Slow { inner: Cpu::new(models(&problems)).expect("a batch"), sizes: sizes.clone() };
+    let (host, places) = share(Box::new(backend));
+    let guests: Vec<Guest> = places.iter().zip(models(&problems)).map(|(place, model)| place.first(model)).collect();
+    drop(places);
+    const TIMES: usize = 6;
+    std::thread::scope(|scope| {
+        for (i, mut guest) in guests.into_iter().enumerate() {
+            scope.spawn(move || {
+                std::thread::sleep(if i < 2 { Duration::ZERO } else { CALL / 2 });
+                let displacement: Arc<[f64]> = vec![0.0; 3 * guest.models()[0].mesh.nodes.len()].into();
+                for _ in 0..TIMES {
+                    guest.call(vec![(0, Call::Force { displacement: displacement.clone() })]).expect("forces");
+                }
+            });
+        }
+        host.serve();
+    });
+    let sizes = sizes.lock().unwrap().clone();
+    assert_eq!(sizes.iter().sum::<usize>(), 4 * TIMES, "{sizes:?}");
+    // By turns it would be twice as many. Nobody waits for guests that have gone.
+    assert!(sizes.len() <= TIMES + 3 && sizes.iter().filter(|&&size| size == 4).count() >= TIMES - 2, "{sizes:?}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! A case's side of a shared backend.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex};
 
@@ -12,6 +13,7 @@ pub struct Slot {
     slot: usize,
     requests: Sender<QueuedCall>,
     told: Arc<Mutex<HostReport>>,
+    running: Arc<AtomicUsize>,
 }
 
 /// One case at its place of a shared backend, which it takes for its own: there it is the only
@@ -25,11 +27,24 @@ pub struct Guest {
     heard: usize,
     /// What had passed to the device and back before this case.
     before: Traffic,
+    /// Guests that there are: a call waits for them.
+    running: Arc<AtomicUsize>,
+}
+
+impl Drop for Guest {
+    fn drop(&mut self) {
+        self.running.fetch_sub(1, Ordering::Relaxed);
+    }
 }
 
 impl Slot {
-    pub(super) fn new(slot: usize, requests: Sender<QueuedCall>, told: Arc<Mutex<HostReport>>) -> Self {
-        Self { slot, requests, told }
+    pub(super) fn new(
+        slot: usize,
+        requests: Sender<QueuedCall>,
+        told: Arc<Mutex<HostReport>>,
+        running: Arc<AtomicUsize>,
+    ) -> Self {
+        Self { slot, requests, told, running }
     }
 
     /// The guest for the case that the backend has had here from the beginning.
@@ -53,7 +68,16 @@ impl Slot {
     }
 
     fn guest(&self, model: CaseModel, heard: usize, before: Traffic) -> Guest {
-        Guest { model: [model], slot: self.slot, requests: self.requests.clone(), told: self.told.clone(), heard, before }
+        self.running.fetch_add(1, Ordering::Relaxed);
+        Guest {
+            model: [model],
+            slot: self.slot,
+            requests: self.requests.clone(),
+            told: self.told.clone(),
+            heard,
+            before,
+            running: self.running.clone(),
+        }
     }
 }
 

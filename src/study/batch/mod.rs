@@ -5,28 +5,39 @@
 //! drive 1 --ask-->  queue  --all that wait-->  backend, one call a kind  --answers--> drives
 //! drive 2 --ask-->
 //! ```
-//! Whoever serves takes all requests that wait at that moment and makes one call of each kind out
-//! of them, so that one dispatch serves every case that is at that point. It does not wait for the
-//! others, who are busy on the cores with what the host does of an iteration: a device that is idle
-//! takes what there is, and one that is busy finds the larger a batch. What a case gets does not
-//! depend on the others of the call ([`Compute`]), so neither do results.
+//! Whoever serves makes one call of each kind out of the requests that wait, so that one dispatch
+//! serves every case that is at that point. Before it does, it waits for the guests who have not
+//! asked yet, who are busy on the cores with what the host does of an iteration, but no longer than
+//! a tenth of the last call took: else cases that are out of step stay so, and each call serves a
+//! part of them. What a case gets does not depend on the others of the call ([`Compute`]), so
+//! neither do results.
 
 mod guest;
 mod queue;
 
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
 
 pub use self::guest::{Guest, Slot};
 use self::queue::{Answered, HostReport, QueuedCall, lock};
 use crate::compute::select::SharedCalls;
 use crate::compute::{Call, Compute};
 
+/// The requests of guests who are late are waited for so many times shorter than the last call
+/// took.
+const PATIENCE: u32 = 10;
+
 /// A backend that will be shared.
 pub struct Host {
     backend: Box<dyn Compute>,
     requests: Receiver<QueuedCall>,
     told: Arc<Mutex<HostReport>>,
+    /// Guests that there are.
+    running: Arc<AtomicUsize>,
+    /// How long the last calls took, from the first request to the answers.
+    last: Duration,
 }
 
 /// A host for a backend and a place for each of its cases.
@@ -34,8 +45,9 @@ pub fn share(backend: Box<dyn Compute>) -> (Host, Vec<Slot>) {
     let cases = backend.models().len();
     let told = Arc::new(Mutex::new(HostReport { about: backend.about(), notes: Vec::new() }));
     let (sender, requests) = channel();
-    let places = (0..cases).map(|slot| Slot::new(slot, sender.clone(), told.clone())).collect();
-    (Host { backend, requests, told }, places)
+    let running = Arc::new(AtomicUsize::new(0));
+    let places = (0..cases).map(|slot| Slot::new(slot, sender.clone(), told.clone(), running.clone())).collect();
+    (Host { backend, requests, told, running, last: Duration::ZERO }, places)
 }
 
 impl Host {
@@ -44,8 +56,10 @@ impl Host {
     pub fn serve(mut self) -> SharedCalls {
         let mut shared = SharedCalls::default();
         while let Ok(first) = self.requests.recv() {
-            let mut alike: Vec<Vec<QueuedCall>> = vec![vec![first]];
-            for request in self.requests.try_iter() {
+            let waiting = self.gather(first);
+            let begun = Instant::now();
+            let mut alike: Vec<Vec<QueuedCall>> = Vec::new();
+            for request in waiting {
                 match alike.iter_mut().find(|of| of[0].call.goes_with(&request.call)) {
                     Some(of) => of.push(request),
                     None => alike.push(vec![request]),
@@ -60,12 +74,31 @@ impl Host {
             told.about = self.backend.about();
             told.notes.extend(notes);
             drop(told);
+            self.last = begun.elapsed();
             for (reply, answer) in answered {
                 // A guest that has gone needs no answer.
                 let _ = reply.send(answer);
             }
         }
         shared
+    }
+
+    /// The requests that wait, once all guests have asked or those that have not have had their
+    /// time.
+    fn gather(&self, first: QueuedCall) -> Vec<QueuedCall> {
+        let mut waiting = vec![first];
+        let until = Instant::now() + self.last / PATIENCE;
+        loop {
+            waiting.extend(self.requests.try_iter());
+            let left = until.saturating_duration_since(Instant::now());
+            if waiting.len() >= self.running.load(Ordering::Relaxed) || left.is_zero() {
+                return waiting;
+            }
+            match self.requests.recv_timeout(left) {
+                Ok(request) => waiting.push(request),
+                Err(_) => return waiting,
+            }
+        }
     }
 
     /// Answers requests of different cases, all of a kind, in one call.
