@@ -243,7 +243,14 @@ fn paths_in_turning_directions_are_checked() {
     let said = String::from_utf8_lossy(&asperity(&args).code(0).get_output().stdout).into_owned();
     assert!(said.contains("figure of eight") && said.contains("flip by 90 degrees"), "{said}");
     assert!(said.contains("4 of 4 paths within") && !said.contains("unknown"), "{said}");
-    assert_eq!(fs::read_dir(&out).expect("curves").count(), 4);
+    // A twist takes a good part of what friction can bear.
+    assert!(said.contains("4 that twist or roll not counted"), "{said}");
+    let twisted = said.lines().find(|line| line.starts_with("shear, then twist")).expect("a twist");
+    let moment = twisted.split_once("M_twist ").and_then(|(_, rest)| rest.split(',').next()).expect("a moment");
+    assert!((0.3..0.7).contains(&moment.parse::<f64>().expect("a number")), "{twisted}");
+    assert_eq!(fs::read_dir(&out).expect("curves").count(), 8);
+    let curve = fs::read_to_string(out.join("the-table-s-material-mu-0.1-shear-then-twist.csv")).expect("a curve");
+    assert!(curve.lines().next().is_some_and(|head| head.ends_with(",twist,roll_x,roll_y,M_twist,M_roll_x,M_roll_y")));
     let circle = out.join("the-table-s-material-mu-0.1-circle-90-of-slip.csv");
     let mut reader = csv::Reader::from_path(&circle).expect("a circle");
     let columns = reader.headers().expect("columns").clone();

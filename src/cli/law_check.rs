@@ -36,7 +36,8 @@ pub struct CheckArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub random: Option<u32>,
     /// Check paths in turning directions instead of the set: circles of half and nine tenths of the
-    /// slip, a figure of eight and a flip by 90 degrees. They take the mesh of the whole sphere.
+    /// slip, a figure of eight and a flip by 90 degrees; and, not counted, as laws have no moments,
+    /// four paths on which the sphere twists or rolls. They take the mesh of the whole sphere.
     #[arg(long, conflicts_with = "random")]
     pub turning: bool,
     /// Seed of the random paths.
@@ -147,7 +148,8 @@ fn in_words(material: &Material) -> String {
 
 /// How many paths are within the aims, by kind and by opponent, and whether that is enough.
 fn verdict(checked: &[Checked], elements: usize, goal: f64) -> (String, bool) {
-    let counted: Vec<&Checked> = checked.iter().filter(|one| one.counts()).collect();
+    let (turned, checked): (Vec<&Checked>, Vec<&Checked>) = checked.iter().partition(|one| one.turns());
+    let counted: Vec<&Checked> = checked.iter().copied().filter(|one| one.counts()).collect();
     let share = |of: &dyn Fn(&Checked) -> bool| {
         let of: Vec<_> = counted.iter().filter(|one| of(one)).collect();
         (of.iter().filter(|one| one.within()).count(), of.len())
@@ -174,6 +176,9 @@ fn verdict(checked: &[Checked], elements: usize, goal: f64) -> (String, bool) {
     if left_out > 0 {
         let limit = 100.0 * MOST_MESH_ERROR;
         let _ = write!(text, "; {left_out} not counted, as their own mesh error is above {limit} % or unknown");
+    }
+    if !turned.is_empty() {
+        let _ = write!(text, "; {} that twist or roll not counted, as the law has no moments", turned.len());
     }
     let enough = left_out as f64 <= MOST_LEFT_OUT * checked.len() as f64;
     let met = enough && within as f64 >= goal * of as f64;

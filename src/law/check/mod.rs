@@ -15,7 +15,7 @@ use std::sync::atomic::AtomicBool;
 use rayon::prelude::*;
 
 use super::{LawError, LawFile};
-use crate::case::{Case, check_room};
+use crate::case::{Case, Friction, Segment, check_room};
 use crate::contact_law::path::drive_in_the_plane;
 use crate::contact_law::{Centres, ContactParameters};
 use crate::law::data::at_the_limit;
@@ -93,6 +93,25 @@ impl Checked {
         self.failure.is_none() && self.mesh.is_some_and(|mesh| mesh.iter().all(|&error| error <= MOST_MESH_ERROR))
     }
 
+    /// Whether a sphere twists or rolls on the path, of which the law says nothing: its F_T and F_N
+    /// are those of the same path without that.
+    pub fn turns(&self) -> bool {
+        self.case.turns()
+    }
+
+    /// Greatest moments about the normal and about the axes in the plane, over the greatest
+    /// mu F_N a (F_N a in full stick). The law has none.
+    pub fn moments(&self) -> [f64; 2] {
+        let mu = match self.case.contact.friction {
+            Friction::Coefficient(mu) => mu,
+            Friction::Stick => 1.0,
+        };
+        let most = |of: fn(&StepRecord) -> f64| self.rows.iter().map(of).fold(0.0, f64::max);
+        let limit = mu * most(|row| row.f_n * row.a);
+        let moments = [most(|row| row.m_twist.abs()), most(|row| row.m_roll_x.hypot(row.m_roll_y))];
+        if limit > 0.0 { moments.map(|moment| moment / limit) } else { [0.0; 2] }
+    }
+
     /// Whether F_T and F_N are within the aims.
     pub fn within(&self) -> bool {
         self.errors().iter().all(Errors::within)
@@ -121,11 +140,14 @@ impl Checked {
 
     /// The simulated steps with the update's forces beside them, as CSV.
     pub fn csv(&self) -> String {
-        let mut text = String::from("segment,h,delta_T,F_N,F_T,law_F_N,law_F_T,delta_T_y,F_T_y,law_F_T_y\n");
+        let mut text = String::from("segment,h,delta_T,F_N,F_T,law_F_N,law_F_T,delta_T_y,F_T_y,law_F_T_y");
+        text += if self.turns() { ",twist,roll_x,roll_y,M_twist,M_roll_x,M_roll_y\n" } else { "\n" };
         for (row, law) in self.rows.iter().zip(&self.law) {
             // Writing to a String cannot fail.
             let along = [row.h, row.delta_t, row.f_n, row.f_t, law[0], law[1]];
-            let numbers = [&along[..], &[row.delta_t_y, row.f_t_y, law[2]]].concat();
+            let turned = [row.twist, row.roll_x, row.roll_y, row.m_twist, row.m_roll_x, row.m_roll_y];
+            let turned = if self.turns() { &turned[..] } else { &[] };
+            let numbers = [&along[..], &[row.delta_t_y, row.f_t_y, law[2]], turned].concat();
             let numbers: Vec<String> = numbers.into_iter().map(decimal).collect();
             let _ = writeln!(text, "{},{}", row.segment, numbers.join(","));
         }
@@ -152,8 +174,15 @@ fn peak(rows: &[StepRecord], force: impl Fn(&StepRecord) -> f64) -> f64 {
 pub fn check(law: &LawFile, paths: &[Path], stop: &Arc<AtomicBool>) -> Result<Vec<Checked>, LawError> {
     let room = memory::room();
     paths.iter().try_for_each(|path| check_room(&path.case, None, &room))?;
-    let parameters = paths.iter().map(|path| law.contact_parameters(&path.case)).collect::<Result<Vec<_>, _>>()?;
+    let parameters = paths.iter().map(|path| law.contact_parameters(&pressed(&path.case))).collect::<Result<Vec<_>, _>>()?;
     paths.par_iter().zip(&parameters).with_max_len(1).map(|(path, parameters)| run(path, parameters, stop)).collect()
+}
+
+/// The case with nothing but its deepest press, where a sphere twists or rolls: a law has the
+/// contact of such a case, and refuses its path.
+fn pressed(case: &Case) -> Case {
+    let path = vec![Segment::Indentation { indentation: case.greatest_indentation() }];
+    if case.turns() { Case { path, ..case.clone() } } else { case.clone() }
 }
 
 fn run(path: &Path, parameters: &ContactParameters, stop: &Arc<AtomicBool>) -> Result<Checked, LawError> {
@@ -218,7 +247,14 @@ pub fn table(checked: &[Checked]) -> String {
         let ([left, left_law], [work, work_law]) = (one.left(), one.dissipated);
         let mark = if one.within() { ' ' } else { '*' };
         let mesh = one.mesh.map_or_else(|| "unknown".to_owned(), |[t, n]| format!("{:.1}, {:.1}", 100.0 * t, 100.0 * n));
-        let left_out = if one.counts() { "" } else { " not counted" };
+        let left_out = match (one.turns(), one.counts()) {
+            (true, _) => {
+                let [twist, roll] = one.moments();
+                format!(" not counted: M_twist {twist:.2}, M_roll {roll:.2} mu F_N a")
+            }
+            (false, true) => String::new(),
+            (false, false) => " not counted".to_owned(),
+        };
         let _ = writeln!(
             text,
             "{:<37}{mark} {:>7.1} {:>7.1} {:>7.1} {:>7.1} {mesh:>11}   {:>6.3} ({:>6.3})   {:>9.3e} ({:>9.3e}){left_out}{}",

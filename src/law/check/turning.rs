@@ -1,4 +1,5 @@
-//! Paths on which the direction of delta_T turns, over a plane or between two spheres.
+//! Paths on which the direction of delta_T turns, and paths on which a sphere twists or rolls, over
+//! a plane or between two spheres.
 
 use std::f64::consts::TAU;
 
@@ -12,10 +13,19 @@ const SIDES: usize = 24;
 /// Steps of a shear by the slip displacement along one of many short segments.
 const STEPS: usize = 4;
 
-/// Circles of half and nine tenths of the slip displacement of the law, a figure of eight and a
-/// flip by 90 degrees, for the material, the friction and the greatest depth of `case`: the paths
-/// of `fixtures/paths/vector` on which nothing twists or rolls. None
-/// where there is no friction.
+/// Twist over the slip displacement, as a displacement at the contact's edge, and roll as one over
+/// the contact radius.
+const TWIST: f64 = 1.5;
+const ROLL: f64 = 0.5;
+/// Of an impact, over its depth: how far it has sheared, twisted and rolled at the deepest and at
+/// the end.
+const IMPACT: [[f64; 4]; 2] = [[0.6, 0.2, 0.4, 0.3], [0.8, 0.3, 0.6, 0.5]];
+
+/// The paths of `fixtures/paths/vector` for the material, the friction and the greatest depth of
+/// `case`. The direction turns along circles of half and nine tenths of the slip displacement of
+/// the law, a figure of eight and a flip by 90 degrees; a sphere twists or rolls in a shear and
+/// then a twist, a twist and then a shear, a roll forth and back at constant F_N, and an oblique
+/// impact with spin. None where there is no friction.
 pub fn turning_paths(case: &Case, parameters: &ContactParameters, elements: usize) -> Vec<Path> {
     if case.contact.friction == Friction::Coefficient(0.0) {
         return Vec::new();
@@ -32,22 +42,48 @@ pub fn turning_paths(case: &Case, parameters: &ContactParameters, elements: usiz
     // Gerono's: through the middle twice, back to the start.
     let eight = (1..=SIDES).map(|i| to([radius * corner(i).0, 0.5 * radius * corner(2 * i).0])).collect();
     let flip = out(radius).into_iter().chain([1.0 / 3.0, 2.0 / 3.0, 1.0].map(|share| to([radius, share * radius])));
-    let paths: [(&str, Vec<Segment>); 4] = [
+    // Contact radius of a plastic contact; an elastic one is smaller by a third.
+    let a = (2.0 * case.effective_radius() * h).sqrt();
+    let twist = || turned(Motion { twist: Some(TWIST * slip / a), ..Motion::default() }, Hold::Indentation);
+    let roll = |about_y: f64| turned(Motion { roll: Some([0.0, about_y]), ..Motion::default() }, Hold::NormalForce);
+    let rolled = vec![roll(ROLL * a / case.sphere.radius), roll(0.0)];
+    let hit = |[x, y, twist, roll]: [f64; 4], depth: f64| {
+        let to = Motion {
+            indentation: Some(depth),
+            shear: Some([x * h, y * h]),
+            twist: Some(twist * h / a),
+            roll: Some([0.0, roll * h / case.sphere.radius]),
+        };
+        Segment::Motion { to, hold: Hold::Indentation }
+    };
+    let sheared_first = out(radius).into_iter().chain([twist()]).collect();
+    let twisted_first = std::iter::once(twist()).chain(out(radius)).collect();
+    let paths: [(&str, Vec<Segment>); 7] = [
         ("circle, 50 % of slip", circle(0.5 * slip)),
         ("circle, 90 % of slip", circle(radius)),
         ("figure of eight", eight),
         ("flip by 90 degrees", flip.collect()),
+        ("shear, then twist", sheared_first),
+        ("twist, then shear", twisted_first),
+        ("roll forth and back, F_N held", rolled),
     ];
     let press = Segment::Indentation { indentation: h };
-    paths
-        .into_iter()
-        .map(|(name, sheared)| {
-            let mut case = meshed(case, elements);
-            case.solver.shear_steps = Some(if sheared.len() > SIDES / 2 { STEPS } else { 2 * STEPS });
-            case.path = [vec![press], sheared].concat();
-            Path { name, case }
-        })
-        .collect()
+    let of = |name: &'static str, steps: usize, path: Vec<Segment>| {
+        let mut case = meshed(case, elements);
+        case.solver.shear_steps = Some(steps);
+        case.path = path;
+        Path { name, case }
+    };
+    let impact = of("impact with spin", 2 * STEPS, vec![hit(IMPACT[0], h), hit(IMPACT[1], 0.0)]);
+    let pressed = paths.into_iter().map(|(name, sheared)| {
+        let steps = if sheared.len() > SIDES / 2 { STEPS } else { 2 * STEPS };
+        of(name, steps, [vec![press], sheared].concat())
+    });
+    pressed.chain([impact]).collect()
+}
+
+fn turned(to: Motion, hold: Hold) -> Segment {
+    Segment::Motion { to, hold }
 }
 
 fn along(delta_t: f64) -> Segment {
@@ -55,6 +91,5 @@ fn along(delta_t: f64) -> Segment {
 }
 
 fn to(shear: [f64; 2]) -> Segment {
-    let to = Motion { indentation: None, shear: Some(shear), roll: None, twist: None };
-    Segment::Motion { to, hold: Hold::Indentation }
+    turned(Motion { shear: Some(shear), ..Motion::default() }, Hold::Indentation)
 }
