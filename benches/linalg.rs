@@ -14,7 +14,8 @@ use criterion::{Criterion, criterion_group, criterion_main};
 mod problem;
 
 fn linalg(criterion: &mut Criterion) {
-    let spec = SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 16, fine_zone: 1.5, skin_levels: 0 };
+    let spec =
+        SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 16, fine_zone: 1.5, skin_levels: 0, first_layer: 1.0 };
     let problem = problem::Brick::slipping(24).on(&sphere_mesh(&spec).unwrap());
     let n = problem.rhs.len();
     let mut group = criterion.benchmark_group(format!("linalg {n} unknowns, {} threads", rayon::current_num_threads()));

@@ -49,7 +49,13 @@ fn the_estimate_is_within_a_quarter_of_the_mesh() {
 fn every_contact_radius_that_a_case_may_give_can_be_meshed() {
     for contact_radius in [0.005, 0.65] {
         let case = case(16, 1.3, contact_radius);
-        let spec = SphereSpec { contact_radius, elements_per_contact_radius: 16, fine_zone: case.mesh.fine_zone, skin_levels: 0 };
+        let spec = SphereSpec {
+            contact_radius,
+            elements_per_contact_radius: 16,
+            fine_zone: case.mesh.fine_zone,
+            skin_levels: 0,
+            first_layer: 1.0,
+        };
         assert!(mesh::element_count(&spec).is_ok(), "{spec:?}");
     }
 }

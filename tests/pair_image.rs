@@ -70,12 +70,13 @@ fn the_path_decides_what_is_meshed() {
     paths.iter().for_each(|(path, expected)| assert_eq!(of(path), *expected, "{path}"));
 }
 
-/// F_N of the press alone differs by 0.9 % on 5 elements: the other body's nodes lie elsewhere.
-/// The two have no rolling moment in a shear, by symmetry; of two meshed bodies, one of which has
-/// the slaves, the middle of the pressure is 0.02 a beside the line of centres on 5 elements.
+/// F_N differs by 0.3 % on 5 elements and 10 at the surface, and by 0.1 % on 8 and 16: the other
+/// body's nodes lie elsewhere. The two have no rolling moment in a shear, by symmetry; of two
+/// meshed bodies, one of which has the slaves, the middle of the pressure is beside the line of
+/// centres.
 #[test]
 fn an_image_has_the_forces_of_two_bodies() {
-    let tight = ["solver.tolerance=1e-6"];
+    let tight = ["solver.tolerance=1e-6", "mesh.surface_elements_per_contact_radius=10"];
     for moved in ["shear = [0.002, 0.003]", "twist = 0.04", "twist = 0.03\nshear = [0.001, 0.0]"] {
         let path = ["indentation = 0.02", moved];
         let (image, two) = (rows(&text(IDEAL, IMAGE, &path), &tight), rows(&text(IDEAL, &meshed(IDEAL), &path), &tight));
@@ -94,7 +95,7 @@ fn an_image_has_the_forces_of_two_bodies() {
             (one.m_roll_x / moment, other.m_roll_x / moment),
             (one.m_roll_y / moment, other.m_roll_y / moment),
         ];
-        let tolerances = [0.01, 0.01, 0.01, 0.005, 0.025, 0.025];
+        let tolerances = [0.005, 0.005, 0.005, 0.0025, 0.015, 0.015];
         assert!(pairs.iter().zip(tolerances).all(|((a, b), tolerance)| (a - b).abs() < tolerance), "{moved}: {pairs:.4?}");
     }
 }

@@ -324,8 +324,9 @@ fn an_elastic_torsion_is_lubkins() {
     let end = twisted.last().expect("rows");
     let limit = pair(end).slip_moment();
     assert!((end.m_twist / limit - 1.0).abs() < 0.01, "{} for {limit}", end.m_twist);
-    // The sphere gives way more than a half-space, by 0.4 a/R: in a shallow contact.
-    let surface = ["mesh.surface_elements_per_contact_radius=32"];
+    // The sphere gives way more than a half-space, by 0.4 a/R: in a shallow contact. At the default
+    // tolerance, of F_N, the moment of so small a twist is known to 1 % alone.
+    let surface = ["mesh.surface_elements_per_contact_radius=32", "solver.tolerance=1e-6"];
     let stuck = rows(&text(ELASTIC, "\"stick\"", 8, &["indentation = 0.0001", "twist = 0.0005"]), &surface);
     let first = stuck.iter().find(|row| row.segment == 1).expect("a twist");
     let stiffness = theory(last(&stuck, 0), 1000.0 / 2.6).initial_stiffness();

@@ -42,7 +42,7 @@ class Case:
     :param path: segments, each ``{"indentation": h}``, ``{"shear": delta_T or "full-slip", "hold": "indentation" or "normal-force"}`` or
         ``{"release": True}``; lengths.
     :param mesh: ``elements_per_contact_radius`` (10), ``surface_elements_per_contact_radius`` (20, but as many as inside where these are
-        given), ``fine_zone``, ``contact_radius``.
+        given), ``first_layer_thickness``, ``fine_zone``, ``contact_radius``.
     :param solver: ``tolerance``, ``press_steps``, ``shear_steps``, ``error_estimate``, ...
     :param output: ``fields`` (``"none"``, ``"contact"``, ``"segments"``, ``"all"``), ``plots``.
     :raises CaseError: what is wrong, with the key and what is allowed.

@@ -80,7 +80,13 @@ pub fn side_by_side<R: Real>(points: &[MaterialPoint<R>]) -> Vec<EightPoints<R>>
 /// # Errors
 /// [`MeshError::ElementsPerContactRadius`].
 pub fn mesh(elements_per_contact_radius: usize) -> Result<Mesh, MeshError> {
-    sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius, fine_zone: 1.3, skin_levels: 0 })
+    sphere_mesh(&SphereSpec {
+        contact_radius: 0.2,
+        elements_per_contact_radius,
+        fine_zone: 1.3,
+        skin_levels: 0,
+        first_layer: 1.0,
+    })
 }
 
 /// A batch on one connectivity, as a study has it: every case has a size, a power law and a

@@ -25,6 +25,7 @@ pub fn estimated_elements(case: &Case) -> usize {
         elements_per_contact_radius: case.mesh.elements_per_contact_radius,
         fine_zone: case.mesh.fine_zone,
         skin_levels: case.mesh.skin_levels(),
+        first_layer: case.mesh.first_layer(),
     };
     // Another body counts as much: the ratio of a to its radius hardly matters.
     let is_meshed_too = match case.opponent {

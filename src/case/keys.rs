@@ -8,7 +8,7 @@ use Limit::{Above, AtLeast, AtMost, Free};
 use Presence::{Defaults, Optional, Required};
 
 use crate::material::HardeningLaw;
-use crate::mesh::FINE_ZONES;
+use crate::mesh::{FINE_ZONES, FIRST_LAYERS};
 
 /// One key of a case file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,7 +111,7 @@ pub const TABLES: [(&str, &str); 10] = [
 pub const LAWS: [&str; 7] = HardeningLaw::WORDS;
 
 const UNIT_LABEL: &str = "1 to 16 letters";
-const UNIT_OMITTED: &str = "normalised axes if no unit is named, else axes labelled \"case's unit of length\" (force, stress)";
+const UNIT_OMITTED: &str = "normalised axes; beside other units, \"case's unit of length\" (or of force, of stress)";
 const STRESS: &str = "stress";
 const LENGTH: &str = "length";
 
@@ -237,22 +237,22 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true or false",
-        meaning: "press onto an equal sphere. Displacements and angles in the case and in the results are then relative: those \
-                  of one equator with respect to the other, twice those of each sphere if both move alike. Both spheres are \
-                  meshed if the path rolls about y, or if it both turns the spheres and leaves the x axis; otherwise only one \
-                  is",
+        meaning: "press onto an equal sphere. Displacements and angles in the case and in the results are then relative, those \
+                  of one equator with respect to the other: twice those of each sphere if the two move symmetrically (by the \
+                  same amount in opposite directions). Both spheres are meshed if the path includes a roll about y, or if it \
+                  combines a twist or roll with a shear that has a component along y; otherwise only one is meshed",
         example: "true",
         ..key("opponent", "equal", Truth, Optional("a rigid plane"))
     },
     Key {
-        range: "true or false, and not beside equal",
+        range: "true or false; equal and rigid cannot both be true",
         meaning: "press onto a rigid sphere of the given radius; without a radius, onto the rigid plane",
         example: "true",
         ..key("opponent", "rigid", Truth, Optional("a rigid plane"))
     },
     Key {
         unit: LENGTH,
-        range: ">= 0.05 R if it is rigid, else 0.1 R to 10 R",
+        range: ">= 0.05 R if the opponent is rigid, else 0.1 R to 10 R",
         meaning: "radius of the opposing sphere; h must stay below 0.3 R* and 0.3 R, with 1/R* = 1/R + 1/radius, or R* = \
                   radius if the body is a flat",
         example: "2.0",
@@ -265,7 +265,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true (without a radius, and with a sphere as the body) or false",
-        meaning: "the opponent is a deformable flat, half a ball of radius 2 R; if it is rigid, it is the plane",
+        meaning: "the opponent is a deformable flat, half a ball of radius 2 R; with rigid = true, it is the rigid plane",
         example: "true",
         ..key("opponent", "flat", Truth, Optional("a sphere if there is a radius or a material, else a rigid plane"))
     },
@@ -301,6 +301,17 @@ pub const KEYS: &[Key] = &[
         )
     },
     Key {
+        range: "0.5 to 1.5",
+        meaning: "thickness of the first layer of elements under the contact, as a multiple of their width there",
+        example: "0.85",
+        ..key(
+            "mesh",
+            "first_layer_thickness",
+            Number(AtLeast(*FIRST_LAYERS.start()), AtMost(*FIRST_LAYERS.end()), &[]),
+            Optional("0.85 where the elements at the surface are halved, else 1"),
+        )
+    },
+    Key {
         range: "1.1 to 3",
         meaning: "radius of the finely meshed zone as a multiple of contact_radius; if the contact grows beyond the zone, \
                   the run starts over with a larger one",
@@ -330,20 +341,22 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "1 to 100000",
-        meaning: "load steps of a press from first touch; a later press gets a proportional share of these steps, plus two",
+        meaning: "number of load steps of a press from first touch; a later press that goes deeper, from h_1 to h, gets the \
+                  share (h - h_1)/h of these steps, plus two",
         example: "26",
         ..key("solver", "press_steps", Whole(1, 100_000), Optional("set by the mesh, 25 on the default one"))
     },
     Key {
         range: "1 to 100000",
-        meaning: "steps of the first part of a shear, in which points begin to slip",
+        meaning: "number of steps in the first part of a shear, while slip spreads over the contact. Their length grows from \
+                  step to step; later steps are at least as long as the last of these",
         example: "15",
         ..key("solver", "shear_steps", Whole(1, 100_000), Optional("15"))
     },
     Key {
         range: "1 to 1000",
-        meaning: "Newton iterations of a step before it is cut in half; if set to 10 or more, the limit doubles while \
-                  convergence is fast",
+        meaning: "Newton iterations of a step before it is cut in half; if set to 10 or more, a step that is \
+                  converging fast may take up to twice as many",
         example: "25",
         ..key("solver", "max_iterations", Whole(1, 1000), Defaults("25"))
     },
@@ -431,7 +444,8 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         unit: LENGTH,
-        range: ">= 0, the first > 0; < 0.3 R, on any sphere but an equal one also < 0.3 R*; the greatest >= 2.5e-7 R^2/R*",
+        range: ">= 0, and > 0 to come into contact; < 0.3 R and, if the opponent is a sphere other than an equal one, < 0.3 R*; \
+                the greatest of the path >= 2.5e-7 R^2/R*",
         meaning: "press to this indentation h, counted from first touch, or unload to it if it is smaller than the present \
                   h",
         example: "0.02",

@@ -244,6 +244,10 @@ pub struct Mesh {
     /// The same at the surface: once, twice, four or eight times as many; `None` for as many.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface_elements_per_contact_radius: Option<usize>,
+    /// Thickness of the first layer of elements over their width, 0.5 to 1.5; `None` for
+    /// [`Mesh::first_layer`]'s own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub first_layer_thickness: Option<f64>,
     /// Radius of the finely meshed zone over the contact radius, 1.1 to 3.
     pub fine_zone: f64,
     /// Contact radius to mesh for, in the units of the sphere's radius, in place of the predicted
@@ -252,10 +256,20 @@ pub struct Mesh {
     pub contact_radius: Option<f64>,
 }
 
+/// See [`Mesh::first_layer`].
+const HALVED_FIRST_LAYER: f64 = 0.85;
+
 impl Mesh {
     /// Elements along the contact radius at the surface.
     pub fn surface_elements(&self) -> usize {
         self.elements_per_contact_radius << self.skin_levels()
+    }
+
+    /// Thickness of the first layer of elements over their width. Thinner than wide, the halved
+    /// elements of a skin make F_N and F_T more accurate; those of a uniform mesh make contact less
+    /// even, and a less accurate (`benches/limits/README.md`).
+    pub fn first_layer(&self) -> f64 {
+        self.first_layer_thickness.unwrap_or(if self.skin_levels() > 0 { HALVED_FIRST_LAYER } else { 1.0 })
     }
 
     /// The same mesh with so many elements along the contact radius, inside and at the surface.
@@ -365,6 +379,7 @@ impl Default for Mesh {
         Self {
             elements_per_contact_radius: 10,
             surface_elements_per_contact_radius: Some(20),
+            first_layer_thickness: None,
             fine_zone: 1.3,
             contact_radius: None,
         }

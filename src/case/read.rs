@@ -11,7 +11,7 @@ use super::{
     estimate, hints, opponent, path, pictures,
 };
 use crate::bounded;
-use crate::mesh::{FINE_ZONES, FINEST_SURFACE, LARGEST_CONTACT};
+use crate::mesh::{FINE_ZONES, FINEST_SURFACE, FIRST_LAYERS, LARGEST_CONTACT};
 
 /// Times as many elements as inside that there may be along the contact radius at the surface.
 const SKINS: [usize; 4] = [1, 2, 4, 8];
@@ -178,7 +178,13 @@ fn read_contact(table: &Reader<'_>) -> Result<Contact, CaseError> {
 }
 
 fn read_mesh(table: &Reader<'_>, radius: f64) -> Result<Mesh, CaseError> {
-    table.only(&["elements_per_contact_radius", "surface_elements_per_contact_radius", "fine_zone", "contact_radius"])?;
+    table.only(&[
+        "elements_per_contact_radius",
+        "surface_elements_per_contact_radius",
+        "first_layer_thickness",
+        "fine_zone",
+        "contact_radius",
+    ])?;
     let mut mesh = Mesh::default();
     let inside = table.get("elements_per_contact_radius").map(|field| field.count(4..=32)).transpose()?;
     let surface = table.get("surface_elements_per_contact_radius");
@@ -196,6 +202,9 @@ fn read_mesh(table: &Reader<'_>, radius: f64) -> Result<Mesh, CaseError> {
             return Err(field.refuse(&problem, &format!("{named}: once, twice, four or eight times as many")));
         }
         mesh.surface_elements_per_contact_radius = Some(at_surface).filter(|&n| n != elements);
+    }
+    if let Some(field) = table.get("first_layer_thickness") {
+        mesh.first_layer_thickness = Some(field.number("a number from 0.5 to 1.5", |ratio| FIRST_LAYERS.contains(&ratio))?);
     }
     if let Some(field) = table.get("fine_zone") {
         mesh.fine_zone = field.number("a number from 1.1 to 3", |ratio| FINE_ZONES.contains(&ratio))?;

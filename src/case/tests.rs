@@ -25,6 +25,7 @@ fn the_reference_case_reads_with_the_documented_defaults() {
         mesh: Mesh {
             elements_per_contact_radius: 10,
             surface_elements_per_contact_radius: Some(20),
+            first_layer_thickness: None,
             fine_zone: 1.3,
             contact_radius: None,
         },
@@ -69,6 +70,7 @@ fn settings_replace_append_and_make_tables() {
         Mesh {
             elements_per_contact_radius: 8,
             surface_elements_per_contact_radius: None,
+            first_layer_thickness: None,
             fine_zone: 1.3,
             contact_radius: Some(0.15)
         }

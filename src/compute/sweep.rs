@@ -79,9 +79,14 @@ mod tests {
 
     #[test]
     fn every_row_finds_the_contributions_of_its_elements() {
-        let sphere =
-            sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 8, fine_zone: 1.3, skin_levels: 0 })
-                .unwrap();
+        let sphere = sphere_mesh(&SphereSpec {
+            contact_radius: 0.2,
+            elements_per_contact_radius: 8,
+            fine_zone: 1.3,
+            skin_levels: 0,
+            first_layer: 1.0,
+        })
+        .unwrap();
         for mesh in [brick(4, 3, 5, [1.0; 3]).unwrap(), brick(40, 3, 30, [1.0; 3]).unwrap(), sphere] {
             let sweep = Sweep::new(&mesh, Keep::Front);
             assert_eq!(Sweep::new(&mesh, Keep::All).slots(), mesh.elements.len());
@@ -106,9 +111,14 @@ mod tests {
 
     #[test]
     fn the_front_is_short() {
-        let mesh =
-            sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 16, fine_zone: 1.3, skin_levels: 0 })
-                .unwrap();
+        let mesh = sphere_mesh(&SphereSpec {
+            contact_radius: 0.2,
+            elements_per_contact_radius: 16,
+            fine_zone: 1.3,
+            skin_levels: 0,
+            first_layer: 1.0,
+        })
+        .unwrap();
         let sweep = Sweep::new(&mesh, Keep::Front);
         assert!(4 * sweep.slots() < mesh.elements.len(), "{} of {}", sweep.slots(), mesh.elements.len());
     }

@@ -58,7 +58,8 @@ pub fn with_skin(levels: usize, seed: u64) -> Arc<Mesh> {
 }
 
 fn half_flat(skin_levels: usize) -> Mesh {
-    flat_mesh(&SphereSpec { contact_radius: 0.3, elements_per_contact_radius: 3, fine_zone: 1.1, skin_levels }).unwrap()
+    flat_mesh(&SphereSpec { contact_radius: 0.3, elements_per_contact_radius: 3, fine_zone: 1.1, skin_levels, first_layer: 1.0 })
+        .unwrap()
 }
 
 fn distorted_flat(mesh: Mesh, seed: u64) -> Arc<Mesh> {

@@ -17,7 +17,14 @@ const BOUND: f32 = 1e-5;
 /// the hierarchy, and both halves of one of either kind.
 fn meshes() -> [Arc<Mesh>; 6] {
     let half = |elements_per_contact_radius, skin_levels| {
-        sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius, fine_zone: 1.3, skin_levels }).unwrap()
+        sphere_mesh(&SphereSpec {
+            contact_radius: 0.2,
+            elements_per_contact_radius,
+            fine_zone: 1.3,
+            skin_levels,
+            first_layer: 1.0,
+        })
+        .unwrap()
     };
     let halves = [half(4, 0), half(8, 0), half(4, 1), half(4, 2)];
     let wholes = [0, 2].map(|i| whole(&halves[i]));

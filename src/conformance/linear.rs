@@ -28,7 +28,8 @@ pub fn mesh() -> Arc<Mesh> {
 /// again, and both halves of the first.
 pub fn meshes() -> [Arc<Mesh>; 4] {
     let half = |skin_levels| {
-        let spec = SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3, skin_levels };
+        let spec =
+            SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3, skin_levels, first_layer: 1.0 };
         sphere_mesh(&spec).unwrap()
     };
     [half(0), half(1), half(2), whole(&half(0))].map(Arc::new)

@@ -7,6 +7,9 @@ use super::{Limits, StepLimits, StepRecord};
 
 /// Press steps from this share of the greatest indentation on show the ripple.
 const RIPPLE_FROM: f64 = 0.25;
+/// Rows whose |F_T| is within this share of the greatest one are at the peak, which is flat: which
+/// of them is the greatest is up to the tolerance of the steps.
+const AT_PEAK: f64 = 1e-3;
 /// Fewest steps by which a ripple is told from a trend.
 const RIPPLE_STEPS: usize = 6;
 
@@ -20,7 +23,7 @@ pub struct ErrorEstimate {
     pub f_n0: Option<f64>,
     /// Of a0, made in the same way.
     pub a0: Option<f64>,
-    /// Of F_T_max: that of its row.
+    /// Of F_T_max: that of the last row that has one and reaches it to within [`AT_PEAK`].
     pub f_t_max: Option<f64>,
     /// Greatest |F_T| of the shear in the limit of fine meshes and short steps.
     pub f_t_max_limit: Option<f64>,
@@ -43,10 +46,8 @@ impl ErrorEstimate {
         let (start_row, start, points) = (start, start.map(at), shear.iter().map(at));
         let force = |row: &StepRecord| size([row.f_t, row.f_t_y]);
         let force_limit = |of: &StepLimits| Some(size([of.f_t_limit?, of.f_t_y_limit?]));
-        let largest = shear
-            .iter()
-            .zip(points.clone())
-            .reduce(|largest, point| if force(point.0) > force(largest.0) { point } else { largest });
+        let most = shear.iter().map(force).fold(0.0, f64::max);
+        let at_peak = shear.iter().zip(points.clone()).filter(|(row, _)| force(row) >= (1.0 - AT_PEAK) * most);
         let curve: Option<Vec<Option<[f64; 3]>>> = start_row.map(|start| {
             let ratio = |f_t: f64, f_n: f64| (f_n > 0.0).then(|| f_t / f_n);
             let point = |(row, of): (&StepRecord, StepLimits)| {
@@ -66,7 +67,7 @@ impl ErrorEstimate {
             coarse_elements: limits.coarse_elements,
             f_n0: start.and_then(|start| start.f_n_error),
             a0: start.and_then(|start| start.a_error),
-            f_t_max: largest.and_then(|(_, point)| point.f_t_error),
+            f_t_max: at_peak.filter_map(|(_, point)| point.f_t_error).last(),
             // Where a part of the shear has none, the largest may lie there.
             f_t_max_limit: points.clone().map(|point| force_limit(&point)).reduce(|most, next| Some(most?.max(next?))).flatten(),
             delta_t: over_mu(&|curve, wanted| displacement_error(curve, wanted)),

@@ -59,7 +59,8 @@ mod tests {
     #[test]
     fn the_opponent_lies_below_and_its_elements_keep_their_volume() {
         for skin_levels in [0, 1] {
-            let spec = SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3, skin_levels };
+            let spec =
+                SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3, skin_levels, first_layer: 1.0 };
             let sphere = sphere_mesh(&spec).unwrap();
             let mesh = couple(sphere.clone(), sphere.clone());
             // As meshes whose corners are all nodes.

@@ -129,6 +129,7 @@ fn mesh_of(Scaled(case): &Scaled<Case>, zone: &Zone) -> Result<Mesh, MeshError> 
         elements_per_contact_radius: case.mesh.elements_per_contact_radius,
         fine_zone: zone.fine_zone,
         skin_levels: case.mesh.skin_levels(),
+        first_layer: case.mesh.first_layer(),
     };
     let own = if case.sphere.flat { flat_mesh(&spec(1.0))? } else { sphere_mesh(&spec(1.0))? };
     // Of what is even in y, half tells all.

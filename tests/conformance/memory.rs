@@ -16,7 +16,8 @@ const GIBIBYTE: u64 = 1 << 30;
 #[test]
 fn a_case_of_the_reference_mesh_takes_90_megabytes_and_32_take_three_gibibytes() {
     let name = "a_case_of_the_reference_mesh_takes_90_megabytes_and_32_take_three_gibibytes";
-    let spec = SphereSpec { contact_radius: 0.2091, elements_per_contact_radius: 16, fine_zone: 1.3, skin_levels: 0 };
+    let spec =
+        SphereSpec { contact_radius: 0.2091, elements_per_contact_radius: 16, fine_zone: 1.3, skin_levels: 0, first_layer: 1.0 };
     let mesh = sphere_mesh(&spec).unwrap();
     assert!(mesh.nodes.len() >= 16_173, "{} nodes", mesh.nodes.len());
     let Some([one, of_case]) = memory(name, &mesh) else { return };
@@ -32,7 +33,8 @@ fn a_case_of_the_reference_mesh_takes_90_megabytes_and_32_take_three_gibibytes()
 fn a_case_with_a_skin_takes_no_more_than_one_that_is_as_fine_inside() {
     let name = "a_case_with_a_skin_takes_no_more_than_one_that_is_as_fine_inside";
     for (elements_per_contact_radius, skin_levels) in [(8, 1), (4, 2)] {
-        let spec = SphereSpec { contact_radius: 0.2091, elements_per_contact_radius, fine_zone: 1.3, skin_levels };
+        let spec =
+            SphereSpec { contact_radius: 0.2091, elements_per_contact_radius, fine_zone: 1.3, skin_levels, first_layer: 1.0 };
         let Some([_, of_case]) = memory(name, &sphere_mesh(&spec).unwrap()) else { return };
         assert!(of_case <= 90 * MEGABYTE, "a case takes {of_case} bytes");
     }

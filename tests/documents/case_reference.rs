@@ -19,8 +19,8 @@ forces are stress times length squared. With millimetres and MPa, forces are in 
 Yield stresses and plastic strains are the true stress and the logarithmic strain of a tensile test (strictly,
 the Kirchhoff stress: true stress times the ratio of present to original volume).
 
-On the command line, `--set KEY=VALUE` replaces a value. The key is dotted, and segments of the path count
-from 0: `--set path.0.indentation=0.01`.
+On the command line, `--set KEY=VALUE` replaces a value. Write the key with dots between its parts; the
+segments of the path (the `[[path]]` entries) are numbered from 0: `--set path.0.indentation=0.01`.
 
 In the column *default*, \"none: X\" means that no value is set; a case without the key behaves as X says.
 
@@ -65,9 +65,10 @@ Each segment has either `release`, or one or several of `indentation`, `shear`, 
 move in proportion. In a shear, twist or roll without `indentation`, `hold` says what stays constant.
 Displacements and angles are totals from first touch, not increments.
 
-They move the cut at the sphere's [equator](opponents.md) as a rigid plate. delta_T is the displacement of one
-surface relative to the other. The axes of a case are fixed; a DEM engine has the same relative displacements
-in a [frame that moves with the contact](laws.md#the-frame-of-the-centres).
+Only the half of the sphere at the contact is modelled. The segments move the sphere's equatorial plane as a
+[rigid plate](opponents.md). delta_T is the displacement of one surface relative to the other. The axes of a
+case are fixed; a DEM engine uses the same relative displacements in a [frame that moves with the
+contact](laws.md#the-frame-of-the-centres).
 
 ```toml
 [[path]]

@@ -6,7 +6,8 @@ use crate::mesh::{SphereSpec, sphere_mesh};
 
 /// Half a sphere with a skin of two levels.
 fn with_skin() -> Arc<Mesh> {
-    let spec = SphereSpec { contact_radius: 0.3, elements_per_contact_radius: 4, fine_zone: 1.3, skin_levels: 2 };
+    let spec =
+        SphereSpec { contact_radius: 0.3, elements_per_contact_radius: 4, fine_zone: 1.3, skin_levels: 2, first_layer: 1.0 };
     Arc::new(sphere_mesh(&spec).unwrap())
 }
 

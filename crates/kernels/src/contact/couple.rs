@@ -188,7 +188,13 @@ mod tests {
     use crate::mesh::{SphereSpec, flat_mesh, opponent_mesh, sphere_mesh};
 
     fn bodies(a: f64, elements: usize, radius: f64) -> Mesh {
-        let spec = |a| SphereSpec { contact_radius: a, elements_per_contact_radius: elements, fine_zone: 1.3, skin_levels: 0 };
+        let spec = |a| SphereSpec {
+            contact_radius: a,
+            elements_per_contact_radius: elements,
+            fine_zone: 1.3,
+            skin_levels: 0,
+            first_layer: 1.0,
+        };
         let other = if radius.is_finite() {
             scaled(opponent_mesh(&spec(a / radius)).unwrap(), radius)
         } else {

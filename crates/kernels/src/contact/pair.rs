@@ -421,7 +421,8 @@ mod tests {
     use crate::mesh::{SphereSpec, sphere_mesh, whole::whole};
 
     fn half() -> Mesh {
-        let spec = SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3, skin_levels: 0 };
+        let spec =
+            SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3, skin_levels: 0, first_layer: 1.0 };
         sphere_mesh(&spec).unwrap()
     }
 

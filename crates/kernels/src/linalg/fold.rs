@@ -184,9 +184,14 @@ mod tests {
 
     #[test]
     fn a_folded_matrix_gives_what_is_even_or_odd_of_the_whole_ones_forces() {
-        let mesh =
-            sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 3, fine_zone: 1.3, skin_levels: 0 })
-                .unwrap();
+        let mesh = sphere_mesh(&SphereSpec {
+            contact_radius: 0.2,
+            elements_per_contact_radius: 3,
+            fine_zone: 1.3,
+            skin_levels: 0,
+            first_layer: 1.0,
+        })
+        .unwrap();
         let half = mesh.half.as_ref().unwrap();
         let opposite = |x: [f64; 3]| mesh.nodes.iter().position(|y| *y == [0.0 - x[0], x[1], x[2]]).unwrap() as u32;
         let mirror: Vec<u32> = mesh.nodes.iter().map(|&x| opposite(x)).collect();

@@ -90,7 +90,13 @@ mod tests {
 
     #[test]
     fn two_bodies_are_one_mesh_that_holds_together_in_itself() {
-        let spec = |a| SphereSpec { contact_radius: a, elements_per_contact_radius: 4, fine_zone: 1.3, skin_levels: 0 };
+        let spec = |a| SphereSpec {
+            contact_radius: a,
+            elements_per_contact_radius: 4,
+            fine_zone: 1.3,
+            skin_levels: 0,
+            first_layer: 1.0,
+        };
         let (sphere, other) = (sphere_mesh(&spec(0.2)).unwrap(), scaled(sphere_mesh(&spec(0.1)).unwrap(), 2.0));
         let mesh = couple(sphere.clone(), other.clone());
         let parts = mesh.couple.clone().unwrap();

@@ -23,8 +23,8 @@ pub use brick::brick;
 pub use couple::{Couple, couple};
 pub use hanging::{Corners, Hanging};
 pub use sphere::{
-    FINE_ZONES, FINEST_SURFACE, LARGEST_CONTACT, LARGEST_FINE_RADIUS, SphereSpec, element_count, flat_mesh, opponent_mesh,
-    sphere_mesh,
+    FINE_ZONES, FINEST_SURFACE, FIRST_LAYERS, LARGEST_CONTACT, LARGEST_FINE_RADIUS, SphereSpec, element_count, flat_mesh,
+    opponent_mesh, sphere_mesh,
 };
 pub use whole::whole;
 
@@ -43,6 +43,9 @@ pub enum MeshError {
     /// The fine zone is out of range.
     #[error("a fine zone of {0} contact radii is outside 1.1 to 3: 1.3 is a good start")]
     FineZone(f64),
+    /// Thickness of the first layer.
+    #[error("a first layer of {0} times the elements' width is outside 0.5 to 1.5")]
+    FirstLayer(f64),
     /// A brick without cells, without extent, or with more nodes than 32-bit numbers can count.
     #[error(
         "a brick of {cells:?} cells and lengths {lengths:?} cannot be meshed: each count must be at least 1, each length positive \

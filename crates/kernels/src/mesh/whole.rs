@@ -138,7 +138,8 @@ mod tests {
     use crate::mesh::{SphereSpec, sphere_mesh};
 
     fn half(skin_levels: usize) -> Mesh {
-        let spec = SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 6, fine_zone: 1.3, skin_levels };
+        let spec =
+            SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 6, fine_zone: 1.3, skin_levels, first_layer: 1.0 };
         sphere_mesh(&spec).unwrap()
     }
 

@@ -20,6 +20,8 @@ pub const LARGEST_CONTACT: f64 = 0.65;
 pub const FINEST_SURFACE: usize = 64;
 /// Radii of the finely meshed surface that there may be, in contact radii.
 pub const FINE_ZONES: std::ops::RangeInclusive<f64> = 1.1..=3.0;
+/// Thicknesses of the first layer that there may be, over the elements' width.
+pub const FIRST_LAYERS: std::ops::RangeInclusive<f64> = 0.5..=1.5;
 /// Largest distance from the axis to which the fine zone may reach.
 pub const LARGEST_FINE_RADIUS: f64 = 0.85;
 
@@ -118,6 +120,9 @@ impl Layout {
         if !FINE_ZONES.contains(&fine_zone) {
             return Err(MeshError::FineZone(fine_zone));
         }
+        if !FIRST_LAYERS.contains(&spec.first_layer) {
+            return Err(MeshError::FirstLayer(spec.first_layer));
+        }
         if count.checked_shl(spec.skin_levels as u32).is_none_or(|finest| finest > FINEST_SURFACE) {
             return Err(MeshError::SkinLevels(spec.skin_levels));
         }
@@ -144,7 +149,7 @@ impl Layout {
         radii[nr] = 2.0;
 
         let shell_depth = SHELL_DEPTH * projected(contact_radius);
-        let layers = shell_depth / spacing;
+        let layers = shell_depth / (spec.first_layer * spacing);
         let nd = nearest_even(sizes_for(layers, LAYER_GROWTH));
         let q = growth(nd, layers);
         let mut depths = vec![0.0];

@@ -14,7 +14,7 @@ use super::hierarchy::hierarchy;
 use super::{Half, Hanging, Mesh, MeshError};
 use geometry::Geometry;
 use layout::Layout;
-pub use layout::{FINE_ZONES, FINEST_SURFACE, LARGEST_CONTACT, LARGEST_FINE_RADIUS};
+pub use layout::{FINE_ZONES, FINEST_SURFACE, FIRST_LAYERS, LARGEST_CONTACT, LARGEST_FINE_RADIUS};
 use skin::Skin;
 
 /// Contact is watched this many fine radii from the pole.
@@ -33,6 +33,9 @@ pub struct SphereSpec {
     pub fine_zone: f64,
     /// How many times the elements at its surface are halved again, in all directions (see `skin`).
     pub skin_levels: usize,
+    /// Thickness under the pole of the first layer of elements over their width, 0.5 to 1.5; of a
+    /// halved layer too.
+    pub first_layer: f64,
 }
 
 /// The mesh of half the lower hemisphere.

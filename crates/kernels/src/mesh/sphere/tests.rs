@@ -6,7 +6,7 @@ use crate::mesh::quality;
 use std::f64::consts::PI;
 
 fn spec(contact_radius: f64, elements_per_contact_radius: usize, fine_zone: f64) -> SphereSpec {
-    SphereSpec { contact_radius, elements_per_contact_radius, fine_zone, skin_levels: 0 }
+    SphereSpec { contact_radius, elements_per_contact_radius, fine_zone, skin_levels: 0, first_layer: 1.0 }
 }
 
 /// Root mean square and largest relative difference between the area tributary to the nodes closer

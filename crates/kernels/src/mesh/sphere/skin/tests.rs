@@ -7,7 +7,7 @@ use crate::mesh::sphere::{SphereSpec, flat_mesh, sphere_mesh};
 use crate::mesh::{Mesh, connectivity::FACES};
 
 fn spec(contact_radius: f64, elements: usize, fine_zone: f64, levels: usize) -> SphereSpec {
-    SphereSpec { contact_radius, elements_per_contact_radius: elements, fine_zone, skin_levels: levels }
+    SphereSpec { contact_radius, elements_per_contact_radius: elements, fine_zone, skin_levels: levels, first_layer: 1.0 }
 }
 
 fn specs() -> Vec<SphereSpec> {
