@@ -67,7 +67,7 @@ impl ErrorEstimate {
             coarse_elements: limits.coarse_elements,
             f_n0: start.and_then(|start| start.f_n_error),
             a0: start.and_then(|start| start.a_error),
-            f_t_max: at_peak.filter_map(|(_, point)| point.f_t_error).last(),
+            f_t_max: at_peak.filter_map(|(_, point)| point.f_t_error).next_back(),
             // Where a part of the shear has none, the largest may lie there.
             f_t_max_limit: points.clone().map(|point| force_limit(&point)).reduce(|most, next| Some(most?.max(next?))).flatten(),
             delta_t: over_mu(&|curve, wanted| displacement_error(curve, wanted)),
