@@ -23,7 +23,7 @@ pub struct ErrorEstimate {
     pub f_n0: Option<f64>,
     /// Of a0, made in the same way.
     pub a0: Option<f64>,
-    /// Of F_T_max: that of the last row that has one and reaches it to within [`AT_PEAK`].
+    /// Of F_T_max: that of the last row that has one and reaches it to within a thousandth.
     pub f_t_max: Option<f64>,
     /// Greatest |F_T| of the shear in the limit of fine meshes and short steps.
     pub f_t_max_limit: Option<f64>,
