@@ -70,10 +70,10 @@ fn the_path_decides_what_is_meshed() {
     paths.iter().for_each(|(path, expected)| assert_eq!(of(path), *expected, "{path}"));
 }
 
-/// F_N differs by 0.3 % after a twist on 5 elements and 10 at the surface, 0.1 % on 8 and 16, and by
-/// 0.8 % after a shear across: the other body's nodes lie elsewhere. The two have no rolling moment in a shear, by symmetry; of two
-/// meshed bodies, one of which has the slaves, the middle of the pressure is beside the line of
-/// centres.
+/// F_N differs by 0.3 % after a twist on 5 elements and 10 at the surface, 0.1 % on 8 and 16, and
+/// by 0.8 % after a shear across: the other body's nodes lie elsewhere. The two have no rolling
+/// moment in a shear, by symmetry; of two meshed bodies, one of which has the slaves, the middle of
+/// the pressure is beside the line of centres.
 #[test]
 fn an_image_has_the_forces_of_two_bodies() {
     let tight = ["solver.tolerance=1e-6", "mesh.surface_elements_per_contact_radius=10"];
