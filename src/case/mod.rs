@@ -256,7 +256,7 @@ pub struct Mesh {
     pub contact_radius: Option<f64>,
 }
 
-/// See [`Mesh::first_layer`].
+/// See [`Mesh::first_layer`]; chosen by `benches/limits/first_layer.py`.
 const HALVED_FIRST_LAYER: f64 = 0.85;
 
 impl Mesh {
@@ -267,7 +267,7 @@ impl Mesh {
 
     /// Thickness of the first layer of elements over their width. Thinner than wide, the halved
     /// elements of a skin make F_N and F_T more accurate; those of a uniform mesh make contact less
-    /// even, and a less accurate (`benches/limits/README.md`).
+    /// even, and a less accurate (`docs/accuracy.md`).
     pub fn first_layer(&self) -> f64 {
         self.first_layer_thickness.unwrap_or(if self.skin_levels() > 0 { HALVED_FIRST_LAYER } else { 1.0 })
     }

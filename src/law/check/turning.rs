@@ -42,7 +42,7 @@ pub fn turning_paths(case: &Case, parameters: &ContactParameters, elements: usiz
     // Gerono's: through the middle twice, back to the start.
     let eight = (1..=SIDES).map(|i| to([radius * corner(i).0, 0.5 * radius * corner(2 * i).0])).collect();
     let flip = out(radius).into_iter().chain([1.0 / 3.0, 2.0 / 3.0, 1.0].map(|share| to([radius, share * radius])));
-    // Contact radius of a plastic contact; an elastic one is smaller by a third.
+    // Contact radius of a plastic contact; that of an elastic one is 0.7 of it.
     let a = (2.0 * case.effective_radius() * h).sqrt();
     let twist = || turned(Motion { twist: Some(TWIST * slip / a), ..Motion::default() }, Hold::Indentation);
     let roll = |about_y: f64| turned(Motion { roll: Some([0.0, about_y]), ..Motion::default() }, Hold::NormalForce);

@@ -31,23 +31,23 @@ const ENOUGH: f64 = 0.3;
 const LEVEL_LENGTHS: usize = 3;
 
 /// The best trial of a line search so far.
-#[derive(Default)]
 struct Best {
+    stick: bool,
     found: Option<(f64, Reading)>,
     /// Why the last trial that could not be evaluated could not.
     refused: Option<Fault>,
 }
 
 impl Best {
-    fn merit(&self, stick: bool) -> f64 {
-        self.found.as_ref().map_or(f64::INFINITY, |(_, reading)| merit(reading, stick))
+    fn merit(&self) -> f64 {
+        self.found.as_ref().map_or(f64::INFINITY, |(_, reading)| self.merit_of(reading))
     }
-}
 
-/// What a trial is judged by: under full stick without the tangential forces of points that come
-/// off in it (see [`Reading::released`]).
-fn merit(trial: &Reading, stick: bool) -> f64 {
-    if stick { (trial.merit * trial.merit - trial.released).max(0.0).sqrt() } else { trial.merit }
+    /// What a trial is judged by: under full stick without the tangential forces of points that
+    /// come off in it (see [`Reading::released`]).
+    fn merit_of(&self, trial: &Reading) -> f64 {
+        if self.stick { (trial.merit * trial.merit - trial.released).max(0.0).sqrt() } else { trial.merit }
+    }
 }
 
 impl Newton {
@@ -71,7 +71,7 @@ impl Newton {
         let of_plate = |force: f64| control.normal_force.map_or(0.0, |held| delta_h * (force - held));
         let at_start = slope + of_plate(self.current.plate_force);
         let left = |reading: &Reading| (reading.slope + of_plate(reading.plate_force)) / at_start;
-        let mut best = Best::default();
+        let mut best = Best { stick, found: None, refused: None };
         let mut whole = None;
         for s in STEP_LENGTHS {
             let tried = self.try_one(case, control, s, &mut best)?;
@@ -82,10 +82,10 @@ impl Newton {
                     whole = leap.then_some((s, reading));
                 }
                 if reference.is_finite() && left_at_end < -LEVEL {
-                    self.level(case, control, left, &mut best)?;
+                    self.level(case, control, left, left_at_end, &mut best)?;
                 }
             }
-            if best.merit(stick) <= (1.0 - 1e-4 * s) * reference {
+            if best.merit() <= (1.0 - 1e-4 * s) * reference {
                 break;
             }
         }
@@ -98,21 +98,18 @@ impl Newton {
 
     /// Tries lengths at which the slope of the energy, `left` of what it is at the start, is
     /// expected to be zero: by the secant of the lengths about it, not nearer to either than a
-    /// tenth of the way. The whole correction is in `best`, and goes too far.
+    /// tenth of the way. `left_at_end` is that of the whole correction, which goes too far.
     fn level(
         &mut self,
         case: &mut CaseHandle<'_>,
         control: &Control,
         left: impl Fn(&Reading) -> f64,
+        left_at_end: f64,
         best: &mut Best,
     ) -> Result<(), Halt> {
-        let stick = case.model().friction == Friction::Stick;
-        let (mut before, mut after) = match &best.found {
-            Some((s, reading)) => ((0.0, 1.0), (*s, left(reading))),
-            None => return Ok(()),
-        };
+        let (mut before, mut after) = ((0.0, 1.0), (1.0, left_at_end));
         for _ in 0..LEVEL_LENGTHS {
-            if best.merit(stick) < ENOUGH * self.current.merit {
+            if best.merit() < ENOUGH * self.current.merit {
                 break;
             }
             let share = (before.1 / (before.1 - after.1)).clamp(0.1, 0.9);
@@ -136,7 +133,6 @@ impl Newton {
         length: f64,
         best: &mut Best,
     ) -> Result<Option<Reading>, Halt> {
-        let stick = case.model().friction == Friction::Stick;
         let mut times = std::mem::take(&mut self.times);
         let tried = self.iterate().try_length(case, control, length, &mut times);
         self.times = times;
@@ -145,7 +141,7 @@ impl Newton {
             best.refused = Some(fault);
             return Ok(None);
         }
-        if best.found.is_none() || merit(&reading, stick) < best.merit(stick) {
+        if best.found.is_none() || best.merit_of(&reading) < best.merit() {
             best.found = Some((length, reading));
             self.iterate().favour();
         }

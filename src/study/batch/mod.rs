@@ -25,8 +25,7 @@ use self::queue::{Answered, HostReport, QueuedCall, lock};
 use crate::compute::select::SharedCalls;
 use crate::compute::{Call, Compute};
 
-/// The requests of guests who are late are waited for so many times shorter than the last call
-/// took.
+/// A call waits for late guests for at most one part in so many of the time that the last one took.
 const PATIENCE: u32 = 10;
 
 /// A backend that will be shared.
@@ -36,7 +35,7 @@ pub struct Host {
     told: Arc<Mutex<HostReport>>,
     /// Guests that there are.
     running: Arc<AtomicUsize>,
-    /// How long the last calls took, from the first request to the answers.
+    /// How long the last round of calls took.
     last: Duration,
 }
 
