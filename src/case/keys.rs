@@ -111,7 +111,6 @@ pub const TABLES: [(&str, &str); 10] = [
 pub const LAWS: [&str; 7] = HardeningLaw::WORDS;
 
 const UNIT_LABEL: &str = "1 to 16 letters";
-const UNIT_OMITTED: &str = "normalised axes; beside other units, \"case's unit of length\" (or of force, of stress)";
 const STRESS: &str = "stress";
 const LENGTH: &str = "length";
 
@@ -231,7 +230,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: ">= 0, or \"stick\"",
-        meaning: "Coulomb's coefficient mu, which holds at every point; with \"stick\" no point ever slips",
+        meaning: "Coulomb's coefficient mu, which holds at every point; with \"stick\" points do not slip unless a step fails",
         example: "0.3",
         ..key("contact", "friction", Number(AtLeast(0.0), Free, &["stick"]), Required)
     },
@@ -428,23 +427,23 @@ pub const KEYS: &[Key] = &[
         range: UNIT_LABEL,
         meaning: "unit of the radius and of displacements, as in \"mm\"",
         example: "\"mm\"",
-        ..key("units", "length", Text, Optional(UNIT_OMITTED))
+        ..key("units", "length", Text, Optional("normalised axes; where another unit is given, \"case's unit of length\""))
     },
     Key {
         range: UNIT_LABEL,
         meaning: "unit of forces, as in \"N\"",
         example: "\"N\"",
-        ..key("units", "force", Text, Optional(UNIT_OMITTED))
+        ..key("units", "force", Text, Optional("normalised axes; where another unit is given, \"case's unit of force\""))
     },
     Key {
         range: UNIT_LABEL,
         meaning: "unit of Young's modulus and of pressures, as in \"MPa\"",
         example: "\"MPa\"",
-        ..key("units", "stress", Text, Optional(UNIT_OMITTED))
+        ..key("units", "stress", Text, Optional("normalised axes; where another unit is given, \"case's unit of stress\""))
     },
     Key {
         unit: LENGTH,
-        range: ">= 0, and > 0 to come into contact; < 0.3 R; on an unequal sphere < 0.3 R* too; the greatest >= 2.5e-7 R^2/R*",
+        range: ">= 0; the first press > 0; < 0.3 R, on an unequal sphere < 0.3 R* too; the deepest of the path >= 2.5e-7 R^2/R*",
         meaning: "press to this indentation h, counted from first touch, or unload to it if it is smaller than the present \
                   h",
         example: "0.02",
@@ -452,7 +451,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         unit: LENGTH,
-        range: "-0.5 R to 0.5 R, [x, y] of such lengths, or \"full-slip\"",
+        range: "-0.5 R to 0.5 R (the smaller radius of two), [x, y] of such lengths, or \"full-slip\"",
         meaning: "shear to this total delta_T, of either sign. One number is along x. With [x, y] the shear has both \
                   components, and the whole sphere is meshed instead of half of it. With \"full-slip\" the shear continues \
                   until every point slips",
@@ -482,8 +481,8 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: "rad",
         range: "-0.5 to 0.5, or [about_x, about_y] of such angles",
-        meaning: "roll the sphere to this total angle about y, of either sign, or to two angles about x and y; the centre of \
-                  the sphere travels as it does in rolling without slip, so that delta_T does not change",
+        meaning: "roll the sphere to this total angle about y, of either sign, or to two angles about x and y, for \
+                  which the whole sphere is meshed; the centre travels as in rolling without slip, so that delta_T does not change",
         example: "0.02",
         ..key("path", "roll", Components(&[]), Optional("the sphere does not roll"))
     },

@@ -13,8 +13,8 @@ use crate::study::{Study, StudyCase, estimated_seconds};
 
 /// Check a case or a study without running it.
 ///
-/// Prints the case with every default and its size; of a study how many combinations there are, all
-/// of them checked, and the first.
+/// Prints a case with every default, and the size of the problem. Of a study, checks all
+/// combinations and prints their number and the first of them.
 #[derive(Clone, Debug, Args)]
 pub struct CheckArgs {
     /// A case or study file; `-` for standard input.

@@ -35,9 +35,10 @@ pub struct CheckArgs {
     /// on a plane, between equal spheres and between unlike bodies in turn.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub random: Option<u32>,
-    /// Check paths in turning directions instead of the set: circles of half and nine tenths of the
-    /// slip, a figure of eight and a flip by 90 degrees; and, not counted, as laws have no moments,
-    /// four paths on which the sphere twists or rolls. They take the mesh of the whole sphere.
+    /// Check paths on which the direction of shear changes, instead of the set: circles with radii
+    /// of 0.5 and 0.9 of the displacement at full slip, a figure of eight and a corner of 90
+    /// degrees. Four paths on which the sphere twists or rolls are simulated too, but not counted,
+    /// as laws have no moments. All of them take the mesh of the whole sphere.
     #[arg(long, conflicts_with = "random")]
     pub turning: bool,
     /// Seed of the random paths.

@@ -33,8 +33,8 @@ pub struct PlotArgs {
     /// always has SVG.
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub format: Option<Format>,
-    /// Width of each picture, as in 85mm, 8.5cm, 3.3in, 240pt or 640px; it is laid out anew for it.
-    /// By default that of the case, or each picture's own.
+    /// Width of each picture, as in 85mm, 8.5cm, 3.3in, 240pt or 640px. The picture is laid out for
+    /// this width. By default that of the case, or each picture's own.
     #[arg(long, value_name = "WIDTH", value_parser = PictureWidth::from_str)]
     pub width: Option<PictureWidth>,
     /// Leave out the titles, for pictures with a caption.

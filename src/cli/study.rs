@@ -22,7 +22,7 @@ use crate::study::{self, Options, Report, Shard, Study, StudyError, StudyProgres
 /// its row says why. An interrupted study continues with --resume.
 #[derive(Clone, Debug, Args)]
 pub struct StudyArgs {
-    /// The study file: a case under `base`, and a `grid` of dotted keys with lists of values.
+    /// The study file: a case under `base`, and values of its keys under `grid`, `zip` or `list`.
     #[arg(value_name = "STUDY.toml", required_unless_present = "merge", conflicts_with = "merge")]
     pub study: Option<PathBuf>,
     /// Directory for the results: new or empty, or with an earlier study if --resume, --shard or
