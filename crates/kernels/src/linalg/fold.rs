@@ -44,6 +44,21 @@ fn sign(axis: usize, left: bool, component: usize, on_mirror: Option<usize>) -> 
     }
 }
 
+/// Blocks differ by whether row and column lie to the left, and at x = 0: a bit each.
+const KINDS: usize = 16;
+
+/// The signs that the entries of each kind of block get.
+fn signs(axis: usize) -> [[f32; 9]; KINDS] {
+    std::array::from_fn(|kind| {
+        let [left_row, left_column, row_at_zero, column_at_zero] = [1, 2, 4, 8].map(|bit| kind & bit != 0);
+        std::array::from_fn(|m| {
+            let (r, c) = (m / 3, m % 3);
+            let by_row = sign(axis, left_row, r, column_at_zero.then_some(c));
+            by_row * sign(axis, left_column, c, row_at_zero.then_some(r))
+        })
+    })
+}
+
 /// A matrix folded at x = 0, and the plan by which it is.
 ///
 /// One matrix serves both parities. Two nodes off x = 0, or two at it, are coupled alike in both.
@@ -55,8 +70,12 @@ pub struct Fold {
     pub matrix: BlockMatrix<f32>,
     /// Whole-mesh nodes of each node of the half: at x >= 0 and opposite; the same at x = 0.
     nodes: Vec<[u32; 2]>,
-    /// Per block of the whole matrix, its place in the row of the half.
+    /// Per block of the whole matrix, its place in the row of the half, and which of the `signs`
+    /// it gets.
     place: Vec<u16>,
+    kind: Vec<u8>,
+    /// Of each kind of block, the signs of its entries.
+    signs: [[f32; 9]; KINDS],
     /// Of the coordinate in which it is folded.
     axis: usize,
 }
@@ -93,13 +112,17 @@ impl Fold {
         });
         let matrix = BlockMatrix::zeros(Pattern::from_rows(rows));
         let mut place = Vec::with_capacity(pattern.entries());
+        let mut kind = Vec::with_capacity(pattern.entries());
         for i in 0..pattern.rows() as u32 {
             let row = &matrix.pattern.column[matrix.pattern.row(folded[i as usize] as usize)];
             for j in columns(i) {
                 place.push(row.binary_search(&folded[j as usize]).ok()? as u16);
+                let at_zero = [i, j].map(|n| u8::from(side(n) == 0));
+                let left = [i, j].map(|n| u8::from(side(n) < 0));
+                kind.push(left[0] | left[1] << 1 | at_zero[0] << 2 | at_zero[1] << 3);
             }
         }
-        Some(Self { matrix, nodes, place, axis })
+        Some(Self { matrix, nodes, place, kind, signs: signs(axis), axis })
     }
 
     /// Nodes of the whole mesh of a node of the half: at x >= 0 and opposite.
@@ -115,25 +138,19 @@ impl Fold {
 
     /// Folds a matrix.
     pub fn update(&mut self, whole: &BlockMatrix<f32>) {
-        let (nodes, place, axis) = (&self.nodes, &self.place, self.axis);
+        let (nodes, place, kind, signs) = (&self.nodes, &self.place, &self.kind, &self.signs);
         let BlockMatrix { pattern, blocks } = &mut self.matrix;
         let mut nothing = vec![(); nodes.len()];
         each_row(blocks, &pattern.row_start, &mut nothing, |a, row, ()| {
-            let columns = &pattern.column[pattern.row(a)];
             row.as_flattened_mut().fill(0.0);
             let [own, opposite] = nodes[a];
             let sides = if own == opposite { 1 } else { 2 };
             for &node in &nodes[a][..sides] {
-                for at in whole.pattern.row(node as usize) {
-                    let (b, j) = (place[at] as usize, whole.pattern.column[at]);
-                    let pair = nodes[columns[b] as usize];
-                    let (left_row, left_column) = (node != own, j != pair[0]);
-                    let (row_at_zero, column_at_zero) = (own == opposite, pair[0] == pair[1]);
+                let range = whole.pattern.row(node as usize);
+                for ((block, &b), &kind) in whole.blocks[range.clone()].iter().zip(&place[range.clone()]).zip(&kind[range]) {
+                    let (folded, signs) = (&mut row[b as usize], &signs[kind as usize]);
                     for m in 0..9 {
-                        let (r, c) = (m / 3, m % 3);
-                        let by_row = sign(axis, left_row, r, column_at_zero.then_some(c));
-                        let by_column = sign(axis, left_column, c, row_at_zero.then_some(r));
-                        row[b][m] += by_row * by_column * whole.blocks[at][m];
+                        folded[m] += signs[m] * block[m];
                     }
                 }
             }
