@@ -57,6 +57,7 @@ fn a_longer_path_has_the_bits_that_it_has_from_the_beginning() {
         ("blind", &["solver.error_estimate=false", "output.fields=\"none\"", "output.plots=false"]),
         ("stick", &["contact.friction=\"stick\"", "output.parquet=true"]),
         ("equal", &["opponent.equal=true", "mesh.elements_per_contact_radius=4"]),
+        ("free", &["sphere.equator=\"free\"", "mesh.elements_per_contact_radius=4"]),
     ] {
         let scratch = scratch();
         let last =

@@ -19,6 +19,7 @@ mod contact_size;
 mod sphere;
 
 pub mod biwa_storakers;
+pub mod body;
 pub mod brizmer;
 pub mod cattaneo_mindlin;
 pub mod hertz;

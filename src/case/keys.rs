@@ -140,6 +140,13 @@ pub const KEYS: &[Key] = &[
         ..key("sphere", "flat", Truth, Optional("a sphere"))
     },
     Key {
+        range: "\"clamped\" or \"free\"",
+        meaning: "how the plane of the equator is held along itself: as a rigid plate, or free to widen as it is pressed, as \
+                  between two halves of a sphere that are pressed alike; free it is not with two meshed bodies or a flat",
+        example: "\"free\"",
+        ..key("sphere", "equator", Word(&["clamped", "free"]), Defaults("\"clamped\""))
+    },
+    Key {
         unit: STRESS,
         range: "> 0, from 1e-75 to 1e75",
         meaning: "Young's modulus E; it sets the unit of stress, and forces are stress times length squared",

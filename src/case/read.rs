@@ -7,8 +7,8 @@ use super::error::{CaseError, Place};
 use super::material::{MAGNITUDES, read_material};
 use super::reader::Reader;
 use super::{
-    Case, Contact, Fields, Friction, Linear, Material, Mesh, Opponent, Output, PictureFormat, Solver, Sphere, UnitLabels,
-    estimate, hints, opponent, path, pictures,
+    Case, Contact, Equator, Fields, Friction, Linear, Material, Mesh, Opponent, Output, PictureFormat, Solver, Sphere,
+    UnitLabels, estimate, hints, opponent, path, pictures,
 };
 use crate::bounded;
 use crate::mesh::{FINE_ZONES, FINEST_SURFACE, FIRST_LAYERS, LARGEST_CONTACT};
@@ -73,6 +73,7 @@ impl Case {
             );
         }
         check_deepest(&case, &root)?;
+        check_equator(&case, &root)?;
         Ok(case)
     }
 
@@ -138,6 +139,20 @@ fn check_deepest(case: &Case, root: &Reader<'_>) -> Result<(), CaseError> {
     Err(field.refuse(&format!("is {deepest:?}, the greatest of the path"), &allowed))
 }
 
+/// Refuses a free equator where another body is meshed, which is held by a plate of its own.
+fn check_equator(case: &Case, root: &Reader<'_>) -> Result<(), CaseError> {
+    let what = match case.opponent {
+        Some(Opponent::Deforming { .. }) => "is \"free\" in a contact of two bodies that are both meshed",
+        Some(Opponent::Equal) if case.image().is_none() => "is \"free\" on a path for which both spheres are meshed",
+        _ if case.sphere.flat => "is \"free\", and a flat has none",
+        _ => return Ok(()),
+    };
+    let allowed = "\"clamped\"; \"free\" for a sphere on a rigid plane, on a rigid sphere, or on an equal one";
+    let field = root.table("sphere")?.get("equator");
+    let free = field.filter(|_| case.sphere.equator == Equator::Free);
+    free.map_or(Ok(()), |field| Err(field.refuse(what, allowed)))
+}
+
 /// Refuses a `--set` argument that sets nothing of a case. The file may have tables of other
 /// programs; what is typed is meant for this one.
 fn refuse_unknown_table(argument: &str) -> Result<(), CaseError> {
@@ -159,10 +174,15 @@ fn read_material_of(root: &Reader<'_>) -> Result<Material, CaseError> {
 }
 
 fn read_sphere(table: &Reader<'_>) -> Result<Sphere, CaseError> {
-    table.only(&["radius", "flat"])?;
+    table.only(&["radius", "flat", "equator"])?;
     let length = "a length > 0 (from 1e-75 to 1e75)";
     let radius = table.require("radius", length)?.number(length, |radius| MAGNITUDES.contains(&radius))?;
-    Ok(Sphere { radius, flat: table.get("flat").map_or(Ok(false), |flat| flat.boolean())? })
+    let flat = table.get("flat").map_or(Ok(false), |flat| flat.boolean())?;
+    let equator = match table.get("equator") {
+        Some(equator) => equator.choice(&[("clamped", Equator::Clamped), ("free", Equator::Free)])?,
+        None => Equator::default(),
+    };
+    Ok(Sphere { radius, flat, equator })
 }
 
 fn read_contact(table: &Reader<'_>) -> Result<Contact, CaseError> {

@@ -39,7 +39,7 @@ impl Case {
             Segment::Release { .. } | Segment::Slip { .. } | Segment::Shear { shear: ShearTarget::FullSlip, .. } => *segment,
         };
         Scaled(Case {
-            sphere: Sphere { radius: 1.0, flat: self.sphere.flat },
+            sphere: Sphere { radius: 1.0, ..self.sphere.clone() },
             material: Material {
                 youngs_modulus: 1.0,
                 poissons_ratio: self.material.poissons_ratio,

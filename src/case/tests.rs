@@ -19,7 +19,7 @@ fn ideal(settings: &[&str]) -> Case {
 fn the_reference_case_reads_with_the_documented_defaults() {
     let expected = Case {
         opponent: None,
-        sphere: Sphere { radius: 1.0, flat: false },
+        sphere: Sphere { radius: 1.0, flat: false, equator: Equator::Clamped },
         material: Material { youngs_modulus: 200e3, poissons_ratio: 0.3, hardening: Hardening::Ideal { yield_stress: 400.0 } },
         contact: Contact { friction: Friction::Coefficient(0.3) },
         mesh: Mesh {

@@ -175,7 +175,7 @@ mod tests {
         let text = fs::read_to_string(&path).unwrap();
         assert!(text.starts_with("step,segment,h,delta_T,F_N,F_T,a,stick_radius,newton_iterations,cutbacks,a_gap,"), "{text}");
         let last = "h_opponent,work_plastic_opponent,curvature,k_T,F_T_limit,F_N_limit,F_T_error,F_N_error,\
-                    delta_T_y,F_T_y,twist,roll_x,roll_y,M_twist,M_roll_x,M_roll_y\n";
+                    delta_T_y,F_T_y,twist,roll_x,roll_y,M_twist,M_roll_x,M_roll_y,h_contact,delta_T_contact,delta_T_y_contact\n";
         assert!(text.ends_with(&format!(",{last}")), "{text}");
         assert!(read_history(&path).unwrap().is_empty());
     }

@@ -70,6 +70,9 @@ impl Scaled<StepRecord> {
             m_twist: scaled.m_twist * force * length,
             m_roll_x: scaled.m_roll_x * force * length,
             m_roll_y: scaled.m_roll_y * force * length,
+            h_contact: scaled.h_contact * travel,
+            delta_t_contact: scaled.delta_t_contact * travel,
+            delta_t_y_contact: scaled.delta_t_y_contact * travel,
             // Counts, indices and ratios have no unit.
             ..*scaled
         }

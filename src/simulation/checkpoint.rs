@@ -8,13 +8,14 @@
 use serde::{Deserialize, Serialize};
 
 use super::SimulationError;
+use super::equator::FreeEquator;
 use super::path::{Start, Target, way_length};
 use super::record::{ContactPoint, StepRecord};
 use crate::compute::CaseState;
 use crate::contact::coulomb::Status;
 use crate::mesh::Mesh;
 use crate::solver::opponent::Opponent;
-use crate::solver::pose::{Pose, product, rotation};
+use crate::solver::pose::{MODES, Pose, product, rotation};
 
 /// Greatest number that a state may have, which is scaled: displacements are over R, forces over E
 /// R^2.
@@ -34,6 +35,10 @@ pub(super) struct Committed {
     pub pose: Pose,
     pub pose_before: Pose,
     pub h_before: f64,
+    /// How a plate that is free along itself is to have widened at the end of the next step.
+    pub stretch: [f64; MODES],
+    /// What is known of how it widens; none of a rigid one.
+    pub equator: Option<FreeEquator>,
     /// How far the centre has moved with what the sphere has rolled.
     pub travel: [f64; 2],
     /// What the last step of the present segment moved, `None` if there is none.
@@ -107,7 +112,7 @@ impl Committed {
             (None, false) => Some(rotation(turned)),
             (Some(turn), false) => Some(product(&rotation(turned), &turn)),
         };
-        Pose { shift: [target.delta_t + x, target.across + y], turn }
+        Pose { shift: [target.delta_t + x, target.across + y], turn, stretch: self.stretch }
     }
 
     /// How far the centre has moved at a target with what the sphere has rolled.
@@ -241,8 +246,11 @@ impl Snapshot {
         let record = record.into_iter().chain([state.record.delta_t_y]).chain(state.record.angles());
         let single = [state.last_length, state.h_max, state.direction, state.h_before];
         let poses = [state.pose, state.pose_before];
-        let poses = poses.iter().flat_map(|pose| pose.shift.iter().chain(pose.turn.iter().flatten().flatten()));
-        let vectors = place.force_before.iter().chain(&state.travel).chain(&state.way).chain(&state.moment).chain(poses);
+        let poses =
+            poses.iter().flat_map(|pose| pose.shift.iter().chain(pose.turn.iter().flatten().flatten()).chain(&pose.stretch));
+        let widening = state.stretch.iter().chain(state.equator.iter().flat_map(FreeEquator::numbers));
+        let vectors =
+            place.force_before.iter().chain(&state.travel).chain(&state.way).chain(&state.moment).chain(poses).chain(widening);
         let single = single.into_iter().chain(vectors.copied());
         let wrong = |what: &str| Some(format!("{what} beyond {LARGEST:e}, or none"));
         if !state.u.iter().chain(&state.u_before).chain(&case.displacement).chain(&state.gaps).all(sound) {

@@ -6,6 +6,7 @@ mod motion;
 mod paused;
 mod safe;
 mod segments;
+mod widening;
 
 use std::sync::Arc;
 
@@ -413,13 +414,14 @@ impl<'a> Drive<'a> {
         let keeps = self.keeps();
         let ratio = self.extrapolation(target);
         let h = self.expected_h(target, ratio);
+        self.set_out_widening(target)?;
         let pose = self.state.pose_at(target);
         let mut guess = match keeps {
             Keeps::Steps => None,
             _ if pose.turn != self.state.pose.turn => ratio.map(|ratio| self.turned_guess(ratio, h, &pose)),
             _ => ratio.map(|ratio| self.guess(ratio)),
         };
-        let control = Control { h, pose, normal_force: if target.hold_force { self.held_force } else { None } };
+        let mut control = Control { h, pose, normal_force: if target.hold_force { self.held_force } else { None } };
         let weight = match self.state.last_increment {
             Some(_) => multistep::weight(self.state.length_to(target) / self.state.last_length),
             None => 0.0,
@@ -446,7 +448,8 @@ impl<'a> Drive<'a> {
             came_off: &[],
         };
         let mut handle = CaseHandle { backend: &mut *self.backend, case: self.case };
-        let outcome = self.newton.solve(&mut handle, &start, &control)?;
+        let outcome = widening::solve(&mut self.newton, &mut handle, &start, &mut control, self.state.equator.as_ref())?;
+        self.state.stretch = control.pose.stretch;
         self.place.wasted += self.newton.take_given_up();
         if let StepOutcome::Converged(_) = outcome {
             let mut lap = Lap::start();

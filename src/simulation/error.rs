@@ -26,6 +26,9 @@ pub enum SimulationError {
     /// The mesh has nodes without one opposite: an equal pair cannot be simulated on it.
     #[error("the mesh is not its own mirror image, which an equal pair needs")]
     NotMirrored,
+    /// The forces that a free equator makes as it widens are none to go by.
+    #[error("the stiffness of the free equator could not be found; sphere.equator = \"clamped\" does without")]
+    Widening,
     /// An accepted step has a result that is no number: nothing can go on from it.
     #[error("{what} of step {step} is {value}, which no result may be; --device cpu tells whether the device computes wrongly")]
     NotFinite {

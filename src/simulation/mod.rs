@@ -4,11 +4,15 @@
 //! the steps (bisecting those that fail), `observer` watches, `follow` starts a run over on a
 //! larger `zone` of fine mesh when the contact leaves it, `scout` finds before how far it will
 //! reach, on a coarse mesh, `footprint` measures the contact, `record` holds what is remembered of
-//! each step, `checkpoint` what the next one depends on.
+//! each step, `checkpoint` what the next one depends on, `body_share` how much
+//! of h and delta_T the bodies give way outside their contact, `equator` how far
+//! a plate widens that is free to.
 
+mod body_share;
 pub mod checkpoint;
 pub mod drive;
 mod ending;
+mod equator;
 pub mod error;
 pub mod follow;
 pub mod footprint;

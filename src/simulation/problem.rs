@@ -6,7 +6,7 @@ use super::SimulationError;
 use super::path::Resolution;
 use super::zone::Zone;
 use crate::analytical::predicted_contact_radius;
-use crate::case::{self, Case, Opponent, Scaled};
+use crate::case::{self, Case, Equator, Opponent, Scaled};
 use crate::compute::CaseModel;
 use crate::contact::coulomb::Friction;
 use crate::contact::rigid::Rigid;
@@ -321,6 +321,11 @@ impl Problem {
         };
         let (mesh, opponent) = (&self.model.mesh, self.opponent());
         let systems = opponent.systems(mesh, kind).map_err(SolverError::from)?.ok_or(SimulationError::NotMirrored)?;
-        Ok(Newton::new(mesh, systems, self.settings).against(opponent).with_any_motion(!self.case.0.moves_along_x()))
+        let at_home = match (self.case.0.moves_along_x(), self.case.0.sphere.equator) {
+            (false, _) => Some("the sphere leaves the x axis or turns, so the vectors of Newton's method stay on the host"),
+            (true, Equator::Free) => Some("the equator is free, so the vectors of Newton's method stay on the host"),
+            (true, Equator::Clamped) => None,
+        };
+        Ok(Newton::new(mesh, systems, self.settings).against(opponent).at_home(at_home))
     }
 }

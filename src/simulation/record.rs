@@ -127,6 +127,16 @@ pub struct StepRecord {
     /// About y.
     #[serde(default, rename = "M_roll_y")]
     pub m_roll_y: f64,
+    /// h between two half-spaces: less what the bodies give way outside their contact beyond those
+    /// (see [`crate::analytical::body`]).
+    #[serde(default)]
+    pub h_contact: f64,
+    /// `delta_t` likewise.
+    #[serde(default, rename = "delta_T_contact")]
+    pub delta_t_contact: f64,
+    /// `delta_t_y` likewise.
+    #[serde(default, rename = "delta_T_y_contact")]
+    pub delta_t_y_contact: f64,
 }
 
 impl StepRecord {
@@ -173,6 +183,9 @@ impl StepRecord {
             ("M_twist", self.m_twist),
             ("M_roll_x", self.m_roll_x),
             ("M_roll_y", self.m_roll_y),
+            ("h_contact", self.h_contact),
+            ("delta_T_contact", self.delta_t_contact),
+            ("delta_T_y_contact", self.delta_t_y_contact),
         ];
         let optional = [
             ("k_T", self.k_t),

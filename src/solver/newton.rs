@@ -10,6 +10,7 @@ use super::iterate::{Asked, Correction, Iterate, SetOut};
 use super::opponent::{Opponent, StepTaken};
 use super::outcome::{Halt, Iteration, StepFailure, StepOutcome, StepReport};
 use super::phases::{Lap, Phase, PhaseTimes};
+use super::pose::{MODES, Pose};
 use super::system::Trial;
 use super::systems::Systems;
 use super::{Control, Settings, SolverError};
@@ -63,8 +64,9 @@ pub struct Newton {
     iterates: ResidentIterate,
     /// The present step's are on the device.
     is_resident: bool,
-    /// They stay on the host whatever the device can do: it knows a plate that moves along x alone.
-    is_at_home: bool,
+    /// Why they stay on the host whatever the device can do: it knows a rigid plate that moves
+    /// along x alone.
+    at_home: Option<&'static str>,
     settings: Settings,
     /// Tolerance of the merit: that of the settings, in f32 no tighter than [`SINGLE`].
     tolerance: f64,
@@ -88,7 +90,7 @@ impl Newton {
         Self {
             iterates: ResidentIterate::new(HostIterate::new(mesh, linear.into())),
             is_resident: false,
-            is_at_home: false,
+            at_home: None,
             settings,
             tolerance: settings.tolerance,
             last_scale: 0.0,
@@ -106,9 +108,9 @@ impl Newton {
         self
     }
 
-    /// The same for a plate that may move across the x axis, or turn.
-    pub fn with_any_motion(mut self, any: bool) -> Self {
-        self.is_at_home = any;
+    /// The same for a plate that a device does not know, and why.
+    pub fn at_home(mut self, why: Option<&'static str>) -> Self {
+        self.at_home = why;
         self
     }
 
@@ -119,7 +121,7 @@ impl Newton {
 
     /// Which iterates of the case stay on this backend.
     pub fn keeps_on(&self, case: &CaseHandle<'_>) -> Keeps {
-        let is_known = self.iterates.host.is_over_plane_by_multigrid() && !self.is_at_home;
+        let is_known = self.iterates.host.is_over_plane_by_multigrid() && self.at_home.is_none();
         if is_known { case.keeps() } else { Keeps::Nothing }
     }
 
@@ -135,7 +137,7 @@ impl Newton {
         if !host.is_over_plane_by_multigrid() {
             return Some("solver.linear is \"direct\", so the vectors and linear systems of Newton's method stay on the host");
         }
-        self.is_at_home.then_some("the sphere leaves the x axis or turns, so the vectors of Newton's method stay on the host")
+        self.at_home
     }
 
     /// The last accepted trial, if its vectors are on the host.
@@ -259,6 +261,27 @@ impl Newton {
             }
             Err(Halt::Solver(error)) => Err(error),
         }
+    }
+
+    /// The outward forces that unit coefficients of the plate's widening make in the undeformed
+    /// body (see [`super::pose`]).
+    ///
+    /// # Errors
+    /// [`SolverError`]; a system without an answer is one of the mesh.
+    pub fn widening_stiffness(&mut self, case: &mut CaseHandle<'_>) -> Result<[[f64; MODES]; MODES], SolverError> {
+        match self.iterates.host.widening_stiffness(case, &mut self.times) {
+            Ok(stiffness) => Ok(stiffness),
+            Err(Halt::Step(failure)) => {
+                log::info!("no stiffness of the equator: {failure}");
+                Ok([[f64::NAN; MODES]; MODES])
+            }
+            Err(Halt::Solver(error)) => Err(error),
+        }
+    }
+
+    /// Outward forces of the plate at the accepted trial, which stands in this pose.
+    pub fn outward(&self, pose: &Pose) -> [f64; MODES] {
+        self.iterates.host.accepted_outward(pose)
     }
 
     /// Finds equilibrium under `control` from the committed displacement, trying a guess first if

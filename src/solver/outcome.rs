@@ -53,6 +53,11 @@ impl StepReport {
     /// This report of iterations in f64, together with that of those in f32 before them.
     pub fn after(mut self, made: Self) -> Self {
         self.confirming = Some(self.iterations.len());
+        self.joined(made)
+    }
+
+    /// This report, and that of iterations of the same step before them.
+    pub fn joined(mut self, made: Self) -> Self {
         self.iterations.splice(0..0, made.iterations);
         self.fallbacks += made.fallbacks;
         self.landed_again += made.landed_again;

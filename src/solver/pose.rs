@@ -8,6 +8,15 @@ pub type Rotation = [[f64; 3]; 3];
 /// Centre of the undeformed sphere.
 pub const CENTRE: [f64; 3] = [0.0, 0.0, 1.0];
 
+/// A plate that is not rigid widens: a node at the distance r from its centre moves outwards by r
+/// times a polynomial in r^2 with so many coefficients.
+pub const MODES: usize = 2;
+
+/// r^2 to the powers of the modes of a node of the plate.
+pub fn modes([x, y, _]: &[f64; 3]) -> [f64; MODES] {
+    [1.0, x * x + y * y]
+}
+
 /// Where the plate stands, but for its indentation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
@@ -15,20 +24,47 @@ pub struct Pose {
     pub shift: [f64; 2],
     /// How it has turned about its centre; `None` as long as it has not.
     pub turn: Option<Rotation>,
+    /// How it has widened before it turned; zeros of a rigid plate.
+    pub stretch: [f64; MODES],
 }
 
 impl Pose {
     /// A plate that has moved by `delta_t` along x.
     pub const fn along_x(delta_t: f64) -> Self {
-        Self { shift: [delta_t, 0.0], turn: None }
+        Self { shift: [delta_t, 0.0], turn: None, stretch: [0.0; MODES] }
+    }
+
+    /// By which share of its distance from the axis a node has moved outwards.
+    fn widening(&self, from_centre: &[f64; 3]) -> f64 {
+        modes(from_centre).iter().zip(self.stretch).map(|(mode, share)| mode * share).sum()
+    }
+
+    /// The outward force of what acts on a node along each of the modes.
+    pub fn outward(&self, from_centre: &[f64; 3], force: &[f64; 3]) -> [f64; MODES] {
+        let [x, y, _] = from_centre;
+        let out = [*x, *y, 0.0];
+        let out = self.turn.map_or(out, |turn| applied(&turn, &out));
+        let along = out[0] * force[0] + out[1] * force[1] + out[2] * force[2];
+        modes(from_centre).map(|mode| mode * along)
     }
 
     /// Displacement of a node of the plate that lies at `from_centre` in the undeformed sphere, at
     /// the indentation `h`.
     pub fn displacement(&self, h: f64, from_centre: &[f64; 3]) -> [f64; 3] {
         let [x, y] = self.shift;
-        let Some(turn) = &self.turn else { return [x, y, -h] };
-        let turned = applied(turn, from_centre);
+        if self.stretch == [0.0; MODES] {
+            return self.rigid([x, y], h, from_centre, from_centre);
+        }
+        let share = 1.0 + self.widening(from_centre);
+        self.rigid([x, y], h, from_centre, &[share * from_centre[0], share * from_centre[1], from_centre[2]])
+    }
+
+    /// The same of a node that has moved to `widened` before the plate is turned and moved as one.
+    fn rigid(&self, [x, y]: [f64; 2], h: f64, from_centre: &[f64; 3], widened: &[f64; 3]) -> [f64; 3] {
+        let Some(turn) = &self.turn else {
+            return [x + (widened[0] - from_centre[0]), y + (widened[1] - from_centre[1]), -h];
+        };
+        let turned = applied(turn, widened);
         [x + (turned[0] - from_centre[0]), y + (turned[1] - from_centre[1]), (turned[2] - from_centre[2]) - h]
     }
 
@@ -124,8 +160,9 @@ mod tests {
 
     #[test]
     fn a_motion_takes_the_plate_from_one_pose_to_the_other() {
-        let from = Pose { shift: [0.1, -0.2], turn: Some(rotation([0.1, 0.2, -0.3])) };
-        let to = Pose { shift: [0.3, 0.1], turn: Some(product(&rotation([-0.2, 0.4, 0.5]), &rotation([0.1, 0.2, -0.3]))) };
+        let from = Pose { shift: [0.1, -0.2], turn: Some(rotation([0.1, 0.2, -0.3])), ..Pose::default() };
+        let to =
+            Pose { shift: [0.3, 0.1], turn: Some(product(&rotation([-0.2, 0.4, 0.5]), &rotation([0.1, 0.2, -0.3]))), ..from };
         let motion = from.motion_to(0.02, &to, 0.05);
         for offset in [[0.7, 0.1, 0.0], [-0.2, 0.9, 0.0]] {
             let at = |pose: &Pose, h: f64| {

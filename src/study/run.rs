@@ -168,9 +168,10 @@ impl Concurrency {
     /// On a device or on so many threads.
     fn of(study: &Study, share: &[usize], device: bool, threads: usize) -> Self {
         // Over a plane the device does nearly all of the work, and the threads of the cases wait
-        // for it; the linear systems of two bodies, and those that are to be solved directly, take
-        // the cores.
-        let there = |case: &Case| case.opponent.is_none() && case.solver.linear == Linear::Multigrid;
+        // for it; the linear systems of two bodies, those that are to be solved directly, and the
+        // vectors of a plate that leaves the x axis, turns or widens, take the cores.
+        let plain = |case: &Case| case.moves_along_x() && case.sphere.equator.is_clamped();
+        let there = |case: &Case| case.opponent.is_none() && case.solver.linear == Linear::Multigrid && plain(case);
         let alone = study.cases.iter().all(|case| there(&case.case));
         let most = match (device, alone) {
             (true, true) => LARGEST_BATCH,

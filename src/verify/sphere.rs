@@ -1,7 +1,8 @@
 //! The checks' sphere, its cases, and the history of one.
 
 use crate::case::{
-    Case, Contact, Fields, Friction, Hardening, Hold, Material, Mesh, Output, Segment, ShearTarget, Solver, Sphere, UnitLabels,
+    Case, Contact, Equator, Fields, Friction, Hardening, Hold, Material, Mesh, Output, Segment, ShearTarget, Solver, Sphere,
+    UnitLabels,
 };
 use crate::output::{ContactPoint, StepRecord};
 
@@ -40,7 +41,7 @@ impl History {
 pub fn sphere(poissons_ratio: f64, hardening: Hardening, friction: f64, elements: usize, path: Vec<Segment>) -> Case {
     Case {
         opponent: None,
-        sphere: Sphere { radius: RADIUS, flat: false },
+        sphere: Sphere { radius: RADIUS, flat: false, equator: Equator::Clamped },
         material: Material { youngs_modulus: YOUNGS_MODULUS, poissons_ratio, hardening },
         contact: Contact { friction: Friction::Coefficient(friction) },
         mesh: Mesh::default().uniform(elements),

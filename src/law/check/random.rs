@@ -2,7 +2,7 @@
 
 use super::protocol::slip_displacement;
 use super::{Path, meshed};
-use crate::case::{Case, Friction, Hardening, Hold, Material, Opponent, Segment, ShearTarget, Sphere};
+use crate::case::{Case, Equator, Friction, Hardening, Hold, Material, Opponent, Segment, ShearTarget, Sphere};
 use crate::law::{LawError, LawFile};
 use crate::random::Seeded;
 
@@ -130,7 +130,7 @@ pub fn drawn(base: &Case, ranges: &Ranges, seed: u64, index: usize) -> Case {
         }
     };
     let mut case = base.clone();
-    case.sphere = Sphere { radius: 1.0, flat: false };
+    case.sphere = Sphere { radius: 1.0, flat: false, equator: Equator::Clamped };
     case.material = material;
     case.contact.friction = Friction::Coefficient(friction);
     case.opponent = opponent;

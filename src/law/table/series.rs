@@ -507,7 +507,12 @@ pub fn compose_from(case: &Case, tables: [&Tabulated; 2], for_shear: [&Tabulated
     let body = |i: usize, tables: [&Tabulated; 2], curvature: Option<f64>| {
         let (table, material, name) = (tables[i], materials[i], NAMES[i]);
         let opponent = opponent_of(table)?;
-        let alone = Case { sphere: Sphere { radius: 1.0, flat: false }, material: material.clone(), opponent, ..scaled.clone() };
+        let alone = Case {
+            sphere: Sphere { flat: false, ..scaled.sphere.clone() },
+            material: material.clone(),
+            opponent,
+            ..scaled.clone()
+        };
         table.covers(&alone).map_err(|error| match error {
             LawError::OtherMaterial { what } => LawError::OtherMaterial { what: format!("of the {name}, {what}") },
             error => error,
@@ -559,7 +564,7 @@ pub fn alone(case: &Case, opponent: Against, spare: f64) -> Option<[Case; 2]> {
     let deepest = scaled.greatest_indentation();
     let radius = scaled.effective_radius();
     let opponent = (opponent == Against::EqualSphere).then_some(Opponent::Equal);
-    let mut base = Case { sphere: Sphere { radius: 1.0, flat: false }, opponent, ..scaled };
+    let mut base = Case { sphere: Sphere { flat: false, ..scaled.sphere.clone() }, opponent, ..scaled };
     // One body may give way by all of h, and its R' is R* at the least; a table of an equal pair
     // counts what both of its spheres give way.
     base.path = vec![Segment::Indentation { indentation: spare * base.bodies() * deepest / radius }];

@@ -139,6 +139,9 @@ impl Tabulated {
         if own.sphere.flat != other.sphere.flat {
             return refuse("which of the two bodies is flat differs".to_owned());
         }
+        if own.sphere.equator != other.sphere.equator {
+            return refuse("sphere.equator differs".to_owned());
+        }
         if let Some(what) = difference(&own.material, &other.material) {
             return refuse(what);
         }

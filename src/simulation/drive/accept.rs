@@ -7,6 +7,7 @@ use crate::compute::{Energies, Fault, Outcome};
 use crate::contact::coulomb::Status;
 use crate::contact::plane::gap;
 use crate::simulation::SimulationError;
+use crate::simulation::body_share::given_way;
 use crate::simulation::checkpoint::Increment;
 use crate::simulation::footprint::{bulge, footprint};
 use crate::simulation::path::Target;
@@ -146,6 +147,7 @@ impl Drive<'_> {
         let shape = self.mesh.couple.as_ref().and_then(|_| bulge(&self.state.points[slaves]));
         let [depth, curvature] = shape.map_or([0.0; 2], |[height, curvature]| [0.0 - side * height, side * curvature]);
         let Exerted { force: [f_t, f_t_y, f_n], moment: [m_roll_x, m_roll_y, m_twist], work } = self.exerted(force, h, turned);
+        let [along, across, down] = given_way(&self.problem.case, [f_t, f_t_y, f_n], size.radius);
         StepRecord {
             h,
             delta_t: target.delta_t,
@@ -165,6 +167,9 @@ impl Drive<'_> {
             m_twist,
             m_roll_x,
             m_roll_y,
+            h_contact: h - down,
+            delta_t_contact: target.delta_t - along,
+            delta_t_y_contact: target.across - across,
             // A run alone knows no limits.
             ..StepRecord::default()
         }
@@ -191,6 +196,10 @@ impl Drive<'_> {
         let (pose, travel) = (state.pose_at(target), state.travel_to(target));
         (state.pose_before, state.h_before) = (std::mem::replace(&mut state.pose, pose), before);
         state.travel = travel;
+        let outward = state.equator.is_some().then(|| self.newton.outward(&state.pose));
+        if let (Some(equator), Some(outward)) = (&mut state.equator, outward) {
+            equator.settle(outward, state.pose.stretch);
+        }
         state.h_max = state.h_max.max(h);
         turned
     }
@@ -212,7 +221,8 @@ impl Drive<'_> {
             + 0.5 * (before.f_n + f_n) * (h - before.h)
             + 0.5 * (before.f_t + f_t) * (to[0] - from[0])
             + 0.5 * (before.f_t_y + f_t_y) * (to[1] - from[1])
-            + turn_work;
+            + turn_work
+            + copies * self.state.equator.map_or(0.0, |equator| equator.work());
         let force = [f_t, f_t_y, f_n];
         let contact = self.newton.opponent().contact_point(&centre);
         Exerted { force, moment: shifted(about_centre, force, &centre, &contact), work }

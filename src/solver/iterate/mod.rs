@@ -5,6 +5,7 @@
 //! itself and asks the backend for forces and tangents, whatever the opponent; `resident` leaves
 //! them on a device that keeps iterates. `linearise` is the linear system of `host`.
 
+mod equator;
 pub mod host;
 mod linearise;
 pub mod resident;

@@ -173,7 +173,7 @@ impl HostIterate {
 
     /// A response as the matrix takes it, and the forces that it makes there: where the conditions
     /// of contact stand in the matrix, in their frames.
-    fn forces_along(&mut self, mesh: &Mesh, response: &[f64]) -> Result<(Vec<f64>, Vec<f64>), Halt> {
+    pub(super) fn forces_along(&mut self, mesh: &Mesh, response: &[f64]) -> Result<(Vec<f64>, Vec<f64>), Halt> {
         let mut motion = response.to_vec();
         if !self.boundary.opponent.is_in_matrix() {
             self.boundary.opponent.expand(&self.current, mesh, &mut motion);
