@@ -7,8 +7,8 @@ Keys and defaults are those of SETTINGS. Written for Tamaas 2.9.0 under Python 3
 Tamaas has half-spaces only: the sphere is a rigid paraboloid here, and the flat yields, with the E of the
 case, small strains and no friction. It is driven by its mean pressure: forces rise by equal steps until the
 approach is that of the case. Its half-space is periodic; the approach is corrected to a single contact.
-Prints `step APPROACH F_N A` and `reached TIME F_N 0` for each step of the press, then hands the pressed model
-to the solvers with friction and prints what they say.
+Prints what the solvers with friction say to the model, then `step APPROACH F_N A` and `reached TIME F_N 0`
+for each step of the press.
 """
 
 import json
@@ -54,9 +54,8 @@ def half_space(case, options):
     return model, surface, inner, tm.EPICSolver(contact, inner, tolerance, 0.3)
 
 
-def press(case, options):
-    """Forces up to the approach of the case; the model at the end."""
-    model, surface, inner, scheme = half_space(case, options)
+def press(case, options, model, surface, inner, scheme):
+    """Forces up to the approach of the case."""
     unit, radius = case["material"]["youngs_modulus"], case["sphere"]["radius"]
     yielding = case["material"]["hardening"]["yield_stress"]
     goal = case["path"][0]["indentation"] / radius
@@ -84,11 +83,10 @@ def press(case, options):
         else:
             print(f"reached {reached / goal:.6f} {force * radius**2:.6g} 0", flush=True)
         before = reached, force
-    return model, surface
 
 
-def shear(case, model, surface):
-    """Hands the pressed model to the solvers with friction; what they say."""
+def friction(case, model, surface):
+    """Hands the model to the solvers with friction; the last refusal."""
     said = ""
     for solver in (tm.Kato, tm.Condat, tm.BeckTeboulle):
         try:
@@ -108,7 +106,10 @@ def main():
         sys.exit(f"unknown: {', '.join(sorted(unknown))}")
     tm.set_log_level(tm.LogLevel.error)
     print(f"Tamaas {tm.__version__}", flush=True)
-    said = shear(case, *press(case, SETTINGS | given))
+    options = SETTINGS | given
+    model, surface, inner, scheme = half_space(case, options)
+    said = friction(case, model, surface)
+    press(case, options, model, surface, inner, scheme)
     if said:
         sys.exit(said)
 
