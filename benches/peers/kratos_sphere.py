@@ -43,7 +43,7 @@ SETTINGS = {
     "active": "0.01",
     "threshold": "0.02",
     "solver": "LinearSolversApplication.sparse_lu",
-    "spring": "100",  # holds the slave nodes in the plane of symmetry, in E R, where multipliers are vectors
+    "spring": "100",  # in E R: holds slave nodes on the plane of symmetry against vectors
     "whole": "0",  # 1 for the whole sphere instead of its half
     "builder": "block",
     "reach": "0.35",  # faces whose nodes lie within this distance of the axis, in R, may touch
@@ -142,7 +142,7 @@ def mirrored(job):
         image[n] = n if abs(y) < 1e-12 else len(nodes)
         if image[n] != n:
             nodes.append((x, -y, z))
-    # The image in the plane turns the elements inside out, so that their two layers of nodes are exchanged.
+    # The image turns elements inside out: their two layers of nodes are exchanged.
     elements += [[image[element[k]] for k in (4, 5, 6, 7, 0, 1, 2, 3)] for element in job["elements"]]
     same = (1, 0, 2, 3, 4, 5)
     contact = job["contact"] + [(e + len(job["elements"]), same[s]) for e, s in job["contact"]]
@@ -202,7 +202,7 @@ class Sphere:
         self.analysis = StructuralMechanicsAnalysis(self.model, parameters(options, case))
         self.part = self.model["Structure"]
         below = set(fill(self.part, job, options))
-        # A multiplier across a displacement that is held has no equation: springs hold those nodes instead.
+        # A multiplier across a held displacement has no equation: springs hold those nodes.
         vectors = options["contact"].startswith("ALM") and options["contact"] != "ALMContactFrictionless"
         self.springs = [n for n in job["symmetry"] if vectors and n + 1 in below]
         laws(self.model, options, case)

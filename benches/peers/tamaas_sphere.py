@@ -30,7 +30,8 @@ SETTINGS = {
     "inner": "1e-9",
     "steps": "4",
 }
-# A square lattice of point forces on a half-space: the mean displacement is 3.9003 F/(pi E* width) below that of one force.
+# A square lattice of point forces: under each, the half-space moves by LATTICE F/(pi E* width) less
+# than under a single one.
 LATTICE = 3.900264920
 
 
