@@ -62,7 +62,7 @@ def press(case, options, model, surface, inner, scheme):
     goal = case["path"][0]["indentation"] / radius
     width = float(options["width"])
     stiffness = unit / (1.0 - model.nu**2)
-    # A first guess of the force at the end: 2.8 times the yield stress on the area that the sphere cuts from the plane.
+    # The last force, guessed: 2.8 times the yield stress on what the sphere cuts from the plane.
     step = 2.8 * yielding * np.pi * 2.0 * goal / int(options["steps"])
     before, force = (0.0, 0.0), 0.0
     while before[0] < goal:
