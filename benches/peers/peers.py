@@ -2,7 +2,7 @@
 """Runs one case with Asperity, then with other codes on the same mesh and path, and prints how far each came.
 
     python3 benches/peers/peers.py OUT [--asperity PROGRAM] [--set KEY=VALUE]... [--peers NAME,NAME...] [--limit SECONDS]
-        [--increment SHARE] [--stick-slope N] [--overclosure N] [--kept]
+        [--increment SHARE] [--stick-slope N] [--overclosure N] [--python PROGRAM] [--peer-set KEY=VALUE]... [--kept]
 
 The nodes and elements are read from the fields that Asperity writes. Each peer has one thread and a limit on its processor time.
 Differences along the shear are those at ten places, root mean square / largest, in per cent of F_N before the shear and of the
@@ -47,6 +47,19 @@ PEERS = {
     "mortar-hard": ccx(contact="MORTAR", behaviour="HARD"),
     "mortar-c3d8r": ccx(element="C3D8R", contact="MORTAR"),
     "getfem": {},
+    "kratos": {"contact": "ALMContactFrictional"},
+    "kratos-keep": {"contact": "ALMContactFrictional", "reset": "0"},
+    "kratos-augmented": {"contact": "ALMContactFrictional", "augment": "1", "tangent": "1"},
+    "kratos-penalty": {"contact": "PenaltyContactFrictional", "tangent": "0.1", "reset": "0"},
+    "kratos-frictionless": {"contact": "ALMContactFrictionless"},
+    "tamaas": {},
+}
+
+# Those that are a script: the module it needs and where that comes from.
+SCRIPTS = {
+    "getfem": ("getfem_sphere.py", "getfem", "apt install python3-getfem"),
+    "kratos": ("kratos_sphere.py", "KratosMultiphysics.ContactStructuralMechanicsApplication", "see kratos_sphere.py"),
+    "tamaas": ("tamaas_sphere.py", "tamaas", "pip install tamaas"),
 }
 
 
@@ -169,20 +182,26 @@ def calculix(name, case, mesh, options, out):
     return code, cpu, forces(folder), len(rows), errors[-1] if errors else ""
 
 
-def getfem(name, case, mesh, options, out):
+def scripted(name, case, mesh, options, out):
+    """Runs the script of a peer on the job; a code of None says that its package is missing."""
+    script, module, source = SCRIPTS[name.split("-")[0]]
+    # Debian's module belongs to Debian's Python.
+    python = "/usr/bin/python3" if module == "getfem" else options.python
+    environment = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    found = subprocess.run([python, "-c", f"import {module}"], capture_output=True, env=environment)
+    if found.returncode:
+        return None, 0.0, [], 0, f"skipped: {python} has no {module.split('.')[0]} ({source})"
     folder = out / name
     folder.mkdir(exist_ok=True)
     (folder / "job.json").write_text(
         json.dumps({"case": case, "nodes": mesh.nodes, "elements": mesh.elements, "equator": mesh.equator,
                     "symmetry": mesh.symmetry, "contact": mesh.contact, "increment": options.increment})
     )
-    environment = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-    # Debian's module belongs to Debian's Python.
-    command = ["/usr/bin/python3", HERE / "getfem_sphere.py", folder / "job.json"]
-    code, cpu = measured(command, folder / "log", options.limit, env=environment)
+    words = [f"{key}={value}" for key, value in PEERS[name].items()] + options.peer_set
+    code, cpu = measured([python, HERE / script, folder / "job.json", *words], folder / "log", options.limit, env=environment)
     said = (folder / "log").read_text().splitlines()
     curve = [tuple(map(float, line.split()[1:4])) for line in said if line.startswith("reached ")]
-    others = [line for line in said if line.strip() and not line.startswith("reached ")]
+    others = [line for line in said if line.strip() and not line.startswith(("reached ", "step ", "Deregistering "))]
     return code, cpu, curve, len(curve), others[-1] if others else ""
 
 
@@ -232,6 +251,8 @@ def main():
     parser.add_argument("--increment", type=float, default=0.1, metavar="SHARE")
     parser.add_argument("--stick-slope", type=float, default=50.0, metavar="N", help="in E/R")
     parser.add_argument("--overclosure", type=float, default=100.0, metavar="N", help="in E/R")
+    parser.add_argument("--python", default=sys.executable, metavar="PROGRAM", help="that has Kratos and Tamaas")
+    parser.add_argument("--peer-set", action="append", default=[], metavar="KEY=VALUE", help="for the script of a peer")
     parser.add_argument("--kept", action="store_true")
     options = parser.parse_args()
     out = options.out.resolve()
@@ -255,7 +276,7 @@ def main():
     print(f"| Asperity | {ours:.1f} | 1 | {len(rows)} | 2 | {last} | | | {' | '.join(apart(own, limit))} | done |", flush=True)
     for name in [name for name in found if name != "Asperity"] if options.kept else options.peers.split(","):
         if not options.kept:
-            runner = getfem if name == "getfem" else calculix
+            runner = scripted if name.split("-")[0] in SCRIPTS else calculix
             found[name] = runner(name, case, mesh, options, out)
             results.write_text(json.dumps(found))
         code, cpu, curve, tries, error = found[name]
@@ -264,7 +285,7 @@ def main():
         start = next((f"{n:.1f}" for t, n, _ in curve if abs(t - 1.0) < 1e-6), "")
         along = [(own[-1][0] * (t - 1.0), n, f) for t, n, f in curve if t > 1.0 - 1e-6]
         cells = [*apart(along, own), *apart(along, limit)] if finished else [""] * 4
-        cells += ["done" if finished else f"code {code}; {error}"]
+        cells += ["done" if finished else error if code is None else f"code {code}; {error}"]
         head = f"{cpu:.1f} | {cpu / ours:.0f} | {tries} | {time:.3f} | {start} | {normal:.1f}, {tangential:.2f}"
         print(f"| {name} | {head} | {' | '.join(cells)} |", flush=True)
 
