@@ -9,8 +9,8 @@
 //! its slaves there, and functions that are dual on that share; those of nodes that are no slaves
 //! go to the images of slaves that they face. All functions add up to one everywhere.
 
-use super::mortar::{COVERED, Face, Grid, Point, SLIVER, Weights};
-use super::mortar::{add, area, clip, dual_functions, each_point, gauss_rules};
+use super::mortar::{COVERED, Face, Grid, SLIVER, Weights, add, dual_functions};
+use super::polygon::{Point, area, clip, each_point, gauss_rules};
 
 /// A node is a slave only so far from the images of others, in elements. Meshes that lie half an
 /// element beside their image along the seam would else have twice the slaves there.

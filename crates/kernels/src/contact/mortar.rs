@@ -8,10 +8,9 @@
 //! shape functions of the other nodes. A face that the seam x = 0 cuts has shape functions for psi,
 //! those of its nodes that are no slaves added to those that are, so that the psi of all slaves add
 //! up to one everywhere. Faces are clipped against the image's faces (Sutherland & Hodgman, Commun.
-//! ACM 17, 1974) and integrated triangle by triangle.
+//! ACM 17, 1974; see [`super::polygon`]) and integrated triangle by triangle.
 
-/// A point of the plane in which surfaces meet.
-pub(super) type Point = [f64; 2];
+use super::polygon::{MOST_POINTS, Point, area, clip, clip_at_seam, each_point, gauss_rules};
 
 /// What the nodes of both sides contribute to the weighted gap of one slave node. The weights of
 /// each side add up to one.
@@ -40,18 +39,6 @@ const MARGIN: f64 = 0.25;
 pub(super) const SLIVER: f64 = 1e-9;
 /// A node that faces its own image with more than this weight lies on the seam.
 const OWN_IMAGE: f64 = 0.25;
-/// Degree 5 rule on the triangle (Radon 1948): barycentric coordinates and weight.
-const RULE: [([f64; 3], f64); 7] = {
-    const A: f64 = 0.059_715_871_789_769_82;
-    const B: f64 = 0.470_142_064_105_115_1;
-    const C: f64 = 0.797_426_985_353_087_3;
-    const D: f64 = 0.101_286_507_323_456_34;
-    const U: f64 = 0.132_394_152_788_506_18;
-    const V: f64 = 0.125_939_180_544_827_15;
-    const T: f64 = 1.0 / 3.0;
-    [([T, T, T], 0.225), ([A, B, B], U), ([B, A, B], U), ([B, B, A], U), ([C, D, D], V), ([D, C, D], V), ([D, D, C], V)]
-};
-
 /// The weights of all slave nodes: those at x >= 0, or not far beyond the seam for their `size`,
 /// whose faces meet the image. `points` are the positions of the surface's nodes in the plane,
 /// `faces` its quadrilaterals (either sense of rotation), `tolerance` the distance to the seam that
@@ -361,65 +348,10 @@ fn dual_of(mass: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
     std::array::from_fn(|a| std::array::from_fn(|b| d[a] * m[a][4 + b]))
 }
 
-pub(super) fn area(polygon: &[Point]) -> f64 {
-    let n = polygon.len();
-    0.5 * (0..n).map(|i| polygon[i][0] * polygon[(i + 1) % n][1] - polygon[(i + 1) % n][0] * polygon[i][1]).sum::<f64>()
-}
-
-/// The part of a polygon left of the line from `from` to `to`.
-fn cut(polygon: &[Point], from: Point, to: Point) -> Vec<Point> {
-    let side = |p: &Point| (to[0] - from[0]) * (p[1] - from[1]) - (to[1] - from[1]) * (p[0] - from[0]);
-    let mut out = Vec::with_capacity(polygon.len() + 1);
-    for (i, p) in polygon.iter().enumerate() {
-        let q = &polygon[(i + 1) % polygon.len()];
-        let (a, b) = (side(p), side(q));
-        if a >= 0.0 {
-            out.push(*p);
-        }
-        if (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0) {
-            let t = a / (a - b);
-            out.push([p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])]);
-        }
-    }
-    out
-}
-
-pub(super) fn clip(subject: &[Point; 4], window: &[Point; 4]) -> Vec<Point> {
-    let mut polygon = subject.to_vec();
-    for e in 0..4 {
-        polygon = cut(&polygon, window[e], window[(e + 1) % 4]);
-        if polygon.len() < 3 {
-            return Vec::new();
-        }
-    }
-    polygon
-}
-
-fn clip_at_seam(polygon: Vec<Point>) -> Vec<Point> {
-    if polygon.iter().all(|p| p[0] >= 0.0) { polygon } else { cut(&polygon, [0.0, 1.0], [0.0, 0.0]) }
-}
-
-/// Calls `f` with the points and weights of a rule over a convex polygon.
-pub(super) fn each_point(polygon: &[Point], smallest: f64, mut f: impl FnMut(Point, f64)) {
-    if polygon.len() < 3 || area(polygon) <= smallest {
-        return;
-    }
-    for i in 1..polygon.len() - 1 {
-        let corners = [polygon[0], polygon[i], polygon[i + 1]];
-        let size = area(&corners);
-        for (l, w) in RULE {
-            f([0, 1].map(|c| (0..3).map(|k| l[k] * corners[k][c]).sum()), w * size);
-        }
-    }
-}
-
 /// What integrals over a polygon may be off by, of their value.
 const EXACT: f64 = 1e-12;
 /// A step of Newton's iteration after which the next would be rounding.
 const NEARLY: f64 = 1e-7;
-/// Points of the largest rule along an edge.
-const MOST_POINTS: usize = 16;
-
 /// Calls `f` with weights and shape functions on both faces at the points of a rule over a convex
 /// polygon that lies on them.
 ///
@@ -461,31 +393,6 @@ fn exactly(polygon: &[Point], smallest: f64, faces: [&Face; 2], mut f: impl FnMu
             }
         }
     }
-}
-
-/// Gauss's rules on (0, 1) by their number of points: place and weight.
-pub(super) fn gauss_rules() -> &'static [Vec<(f64, f64)>] {
-    static RULES: std::sync::OnceLock<Vec<Vec<(f64, f64)>>> = std::sync::OnceLock::new();
-    RULES.get_or_init(|| (0..=MOST_POINTS).map(gauss_rule).collect())
-}
-
-/// Legendre's polynomial of degree n has its zeros near cos(pi (i + 3/4)/(n + 1/2)).
-fn gauss_rule(n: usize) -> Vec<(f64, f64)> {
-    let point = |i: usize| {
-        let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
-        let mut slope = 1.0;
-        for _ in 0..20 {
-            let (mut p, mut before) = (1.0, 0.0);
-            for k in 1..=n {
-                let k = k as f64;
-                (p, before) = (((2.0 * k - 1.0) * x * p - (k - 1.0) * before) / k, p);
-            }
-            slope = n as f64 * (x * p - before) / (x * x - 1.0);
-            x -= p / slope;
-        }
-        (0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * slope * slope))
-    };
-    (0..n).map(point).collect()
 }
 
 /// Faces by the cells of a regular grid that their bounds touch.
