@@ -141,8 +141,9 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "\"clamped\" or \"free\"",
-        meaning: "how the plane of the equator is held along itself: as a rigid plate, or free to widen as it is pressed, as \
-                  between two halves of a sphere that are pressed alike; free it is not with two meshed bodies or a flat",
+        meaning: "whether the equatorial plane may widen. Clamped, it moves as a rigid plate; free, it widens under load, as the \
+                  mid-plane of a sphere does that is pressed equally from both sides; refused for a flat and where two bodies \
+                  are meshed",
         example: "\"free\"",
         ..key("sphere", "equator", Word(&["clamped", "free"]), Defaults("\"clamped\""))
     },
@@ -489,7 +490,7 @@ pub const KEYS: &[Key] = &[
         unit: "rad",
         range: "-0.5 to 0.5, or [about_x, about_y] of such angles",
         meaning: "roll the sphere to this total angle about y, of either sign, or to two angles about x and y, for \
-                  which the whole sphere is meshed; the centre travels as in rolling without slip, so that delta_T does not change",
+                  which the whole sphere is meshed; the centre travels by (R - h) times the angle, so that delta_T does not change",
         example: "0.02",
         ..key("path", "roll", Components(&[]), Optional("the sphere does not roll"))
     },

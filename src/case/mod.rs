@@ -85,20 +85,18 @@ pub struct Sphere {
     /// The body is no sphere but a flat: half a ball of radius 2 R, pressed onto its flat face.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub flat: bool,
-    /// How the plane of the equator is held along itself.
-    #[serde(skip_serializing_if = "Equator::is_clamped")]
+    /// Whether the plane of the equator may widen.
     pub equator: Equator,
 }
 
-/// How the nodes of the equatorial plane, which move as one along its normal, are held along it.
+/// Whether the equatorial plane, whose nodes move along its normal as one, may widen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Equator {
     /// They move as a rigid plate.
     #[default]
     Clamped,
-    /// The plate widens as a plane between two equal halves of a sphere does: it exerts no radial
-    /// forces.
+    /// It widens as the mid-plane of a sphere does that is pressed equally from both sides.
     Free,
 }
 

@@ -19,8 +19,9 @@ pub struct ExportArgs {
     /// A law file that `law fit`, `law tabulate` or `law compose` wrote; or `built-in`.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
-    /// The material, the friction and the greatest depth; `-` for standard input. With --for, of
-    /// the opponent only the depth of its contact counts. A table needs no case.
+    /// The material, the friction and the greatest depth; `-` for standard input. With --for, the
+    /// opponent only says how deep the sphere's own surface is pressed: by half of the greatest
+    /// indentation against a sphere that deforms, else by all of it. A table needs no case.
     #[arg(value_name = "CASE.toml")]
     pub case: Option<PathBuf>,
     /// Replace a value of the case, as in contact.friction=0.1 or path.0.indentation=0.01. May be

@@ -139,7 +139,7 @@ mod tests {
             assert!(message.starts_with(&format!("step 3: {column} is inf")), "{message}");
             refused += 1;
         }
-        assert_eq!(refused, 30);
+        assert_eq!(refused, 33);
         let message = check_row(path, &StepRecord { f_n: f64::NAN, ..row }).unwrap_err().to_string();
         assert!(message.starts_with("step 3: F_N is NaN"), "{message}");
     }

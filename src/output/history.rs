@@ -232,7 +232,7 @@ mod tests {
         let error = fails(good.replace("148.8123456789012", "many"));
         assert!(error.contains("line 2") && error.contains("column F_N"), "{error}");
         let error = fails(good.clone() + "3,0,0.01\n");
-        assert!(error.contains("line 4") && error.contains("3 values where there are 39"), "{error}");
+        assert!(error.contains("line 4") && error.contains("3 values where there are 42"), "{error}");
         let error = fails(good.replace("delta_T", "shear"));
         assert!(error.contains("line 1") && error.contains("delta_T"), "{error}");
         let error = fails(String::new());

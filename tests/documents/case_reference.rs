@@ -66,9 +66,9 @@ move in proportion. In a shear, twist or roll without `indentation`, `hold` says
 Displacements and angles are totals from first touch, not increments.
 
 Only the half of the sphere at the contact is modelled. The segments move the sphere's equatorial plane as a
-[rigid plate](opponents.md). delta_T is the displacement of one surface relative to the other. The axes of a
-case are fixed; a DEM engine uses the same relative displacements in a [frame that moves with the
-contact](laws.md#the-frame-of-the-centres).
+[rigid plate](opponents.md). delta_T is the tangential displacement of this plate over the opponent, less the
+travel of rolling. The axes of a case are fixed; a DEM engine integrates the same displacement in a [frame
+that moves with the contact](laws.md#the-frame-of-the-centres).
 
 ```toml
 [[path]]
