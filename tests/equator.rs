@@ -5,6 +5,7 @@
 mod followed;
 
 use asperity::case::Case;
+use asperity::law::LawFile;
 use asperity::output::StepRecord;
 
 const CASE: &str = "
@@ -88,6 +89,38 @@ fn shears_releases_and_rolls_keep_their_energies() {
         let rows = rows(&[FREE, "solver.press_steps=40", settings[0], settings[1]]);
         assert_energy(&rows, 0.01);
     }
+}
+
+#[test]
+fn a_second_press_after_a_full_release_and_full_stick_go_on() {
+    let again = "path=[{indentation=0.04},{release=true},{indentation=0.04},{shear=0.004}]";
+    let (clamped, free) = (rows(&[again]), rows(&[FREE, again]));
+    let (a, b) = (last(&clamped), last(&free));
+    assert!((b.f_n / a.f_n - 1.0).abs() < 0.03 && (b.f_t / a.f_t - 1.0).abs() < 0.03, "{a:?} {b:?}");
+    // In the air and on first touch nothing pushes sideways.
+    let pressed: Vec<&StepRecord> = free.iter().filter(|row| row.segment <= 2).collect();
+    assert!(
+        pressed.iter().all(|row| row.f_t.abs() < 1e-6 * a.f_n),
+        "{:?}",
+        pressed.iter().map(|row| row.f_t).collect::<Vec<_>>()
+    );
+    assert_energy(&free, 0.02);
+    let stick = ["contact.friction=\"stick\"", "path=[{indentation=0.03},{shear=0.006},{shear=0.0}]"];
+    let rows = followed::rows(CASE, &[&stick[..], &[FREE]].concat());
+    assert!(last(&rows).h == 0.03 && rows.iter().any(|row| row.f_t > 0.0));
+}
+
+#[test]
+fn laws_of_many_contacts_refuse_it_and_a_table_keeps_to_its_own() {
+    let case = |settings: &[&str]| {
+        let settings: Vec<String> = settings.iter().map(|&setting| setting.to_owned()).collect();
+        Case::parse(CASE, "case.toml", &settings).expect("a case")
+    };
+    let (clamped, free) = (case(&["path=[{indentation=0.02}]"]), case(&[FREE, "path=[{indentation=0.02}]"]));
+    let built_in = LawFile::built_in().expect("the built-in law");
+    assert!(built_in.contact_parameters(&clamped).is_ok());
+    let error = built_in.contact_parameters(&free).expect_err("a refusal").to_string();
+    assert!(error.contains("sphere.equator = \"free\""), "{error}");
 }
 
 #[test]

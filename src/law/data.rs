@@ -145,6 +145,9 @@ fn read_sample(id: &str, directory: &OutputDirectory, materials: &mut Vec<Scaled
     if case.opponent.is_some() {
         return Ok(Usable::No("against another sphere, not a plane"));
     }
+    if !case.sphere.equator.is_clamped() {
+        return Ok(Usable::No("with a free equator"));
+    }
     let friction = match case.contact.friction {
         Friction::Coefficient(mu) if mu > 0.0 => mu,
         Friction::Coefficient(_) => return Ok(Usable::No("without friction")),

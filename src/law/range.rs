@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::LawError;
+use crate::case::Case;
+
 /// A closed interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Interval {
@@ -41,6 +44,20 @@ impl std::fmt::Display for OutOfRange {
         let Self { quantity, value, range } = self;
         write!(f, "{quantity} = {value:.4} is outside of {:.4} to {:.4}", range.from, range.to)
     }
+}
+
+/// Refuses a case whose equator is free: laws for many contacts are of clamped ones.
+///
+/// # Errors
+/// [`LawError::NotCovered`].
+pub fn clamped(case: &Case) -> Result<(), LawError> {
+    if case.sphere.equator.is_clamped() {
+        return Ok(());
+    }
+    Err(LawError::NotCovered {
+        problem: "the case has sphere.equator = \"free\", and the law is of contacts with a clamped equator",
+        remedy: "Leave sphere.equator out, or tabulate the case with `asperity law tabulate`",
+    })
 }
 
 /// Share of an end by which a quantity may pass it before it is called outside.

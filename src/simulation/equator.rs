@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::solver::pose::MODES;
 
 /// A step is taken with coefficients that are off by so much of the largest so far. The whole of
-/// them takes at most 5 % of F_N away up to h = 0.1 R.
+/// them takes 7 % of F_N away in an elastic contact at h = 0.1 R.
 const NEAR: f64 = 0.01;
 
 /// The coefficients of a plate that is free.

@@ -29,6 +29,9 @@ pub enum SimulationError {
     /// The forces that a free equator makes as it widens are none to go by.
     #[error("the stiffness of the free equator could not be found; sphere.equator = \"clamped\" does without")]
     Widening,
+    /// A path that a program has put together meshes both bodies, of which one has a free equator.
+    #[error("sphere.equator is \"free\" on a path for which both spheres are meshed")]
+    TwoPlates,
     /// An accepted step has a result that is no number: nothing can go on from it.
     #[error("{what} of step {step} is {value}, which no result may be; --device cpu tells whether the device computes wrongly")]
     NotFinite {

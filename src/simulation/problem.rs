@@ -320,6 +320,9 @@ impl Problem {
             case::Linear::Direct => SolverKind::Direct,
         };
         let (mesh, opponent) = (&self.model.mesh, self.opponent());
+        if !self.case.0.sphere.equator.is_clamped() && matches!(self.case.0.opponent, Some(Opponent::Deforming { .. })) {
+            return Err(SimulationError::TwoPlates);
+        }
         let systems = opponent.systems(mesh, kind).map_err(SolverError::from)?.ok_or(SimulationError::NotMirrored)?;
         let at_home = match (self.case.0.moves_along_x(), self.case.0.sphere.equator) {
             (false, _) => Some("the sphere leaves the x axis or turns, so the vectors of Newton's method stay on the host"),

@@ -75,7 +75,7 @@ pub struct Newton {
     largest_scale: f64,
     /// What is known of the current iterate.
     current: Reading,
-    /// Iterations in f32 from which no step has come.
+    /// Iterations from which no step has come, though they converged or were in f32.
     given_up: usize,
     /// A held normal force may be missed by [`HELD_AT_LAST`].
     may_miss: bool,
@@ -351,14 +351,25 @@ impl Newton {
         match followed {
             Ok(report) => Ok(report.after(made)),
             Err(halt) => {
-                self.given_up += made.iterations.len();
-                self.times += made.times;
+                self.give_up(made);
                 Err(halt)
             }
         }
     }
 
-    /// Newton iterations in f32 since the last call from which no step has come.
+    /// Contact points that came off in the iterations to the accepted trial, or before them as they
+    /// were told.
+    pub fn came_off(&self) -> &[bool] {
+        self.iterates.host.came_off()
+    }
+
+    /// Counts what a solution took from which no step comes.
+    pub fn give_up(&mut self, made: StepReport) {
+        self.given_up += made.iterations.len();
+        self.times += made.times;
+    }
+
+    /// Newton iterations since the last call from which no step has come.
     pub fn take_given_up(&mut self) -> usize {
         std::mem::take(&mut self.given_up)
     }

@@ -27,6 +27,8 @@ pub struct StepReport {
     /// Newton iterations on the host in f64 after a device's in f32; `None` where no device works
     /// so.
     pub confirming: Option<usize>,
+    /// Iterations of the hardest of its solutions, where it was solved again.
+    pub hardest: Option<usize>,
     /// Accepted above the tolerance, at a kink of the merit.
     pub relaxed: bool,
     /// Under full stick: points that stuck when the step began, came off in it and came down again.
@@ -43,21 +45,26 @@ impl StepReport {
         self.iterations.iter().map(|i| i.krylov).sum()
     }
 
-    /// How hard the step was: its iterations; if some were in f32 and some in f64, the larger of
-    /// the two numbers.
+    /// How hard the step was: its iterations; if some were in f32 and some in f64, or in several
+    /// solutions, the largest of the numbers.
     pub fn effort(&self) -> usize {
         let all = self.iterations.len();
-        self.confirming.map_or(all, |confirming| confirming.max(all - confirming))
+        self.hardest.unwrap_or_else(|| self.confirming.map_or(all, |confirming| confirming.max(all - confirming)))
     }
 
     /// This report of iterations in f64, together with that of those in f32 before them.
     pub fn after(mut self, made: Self) -> Self {
         self.confirming = Some(self.iterations.len());
-        self.joined(made)
+        self.with(made)
     }
 
-    /// This report, and that of iterations of the same step before them.
-    pub fn joined(mut self, made: Self) -> Self {
+    /// This report of a step that was solved again, together with that of the solution before.
+    pub fn again_after(mut self, made: Self) -> Self {
+        self.hardest = Some(self.effort().max(made.effort()));
+        self.with(made)
+    }
+
+    fn with(mut self, made: Self) -> Self {
         self.iterations.splice(0..0, made.iterations);
         self.fallbacks += made.fallbacks;
         self.landed_again += made.landed_again;

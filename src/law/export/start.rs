@@ -7,7 +7,7 @@ use super::engine::{TableFile, beyond_the_law, table_file};
 use super::file::ExportedFile;
 use crate::case::{Case, Friction, Opponent, Segment};
 use crate::contact_law::export::{HEADER_NAME, fill, header, header_3d};
-use crate::law::range::OutOfRange;
+use crate::law::range::{OutOfRange, clamped};
 use crate::law::{LawError, LawFile};
 
 const INPUT: &str = include_str!("in.asperity");
@@ -63,6 +63,7 @@ pub fn start_files(law: &LawFile, engine: Engine, cases: &[(String, Case)]) -> R
             remedy: "Leave sphere.flat out, and name the material of a wall with [opponent] in a case for --format",
         });
     }
+    cases.iter().try_for_each(|(_, case)| clamped(case))?;
     let names = names(cases);
     let mut start = Start { files: Vec::new(), out_of_range: Vec::new() };
     let mut tables = Vec::new();

@@ -5,7 +5,7 @@ use super::normal::NormalState;
 use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
 use crate::law::LawError;
 use crate::law::data::Point;
-use crate::law::range::OutOfRange;
+use crate::law::range::{OutOfRange, clamped};
 use crate::law::variables::Body;
 use crate::output::Recorder;
 use crate::simulation::drive::Ending;
@@ -74,6 +74,7 @@ pub fn predict(law: &Law, case: &Case, source: NormalSource) -> Result<Predictio
 /// # Errors
 /// [`LawError::NotCovered`].
 pub fn over_a_plane(case: &Case) -> Result<(), LawError> {
+    clamped(case)?;
     match case.opponent {
         None => Ok(()),
         Some(_) => Err(LawError::NotCovered {

@@ -219,6 +219,9 @@ fn unusable(case: &Case) -> Option<&'static str> {
     if !matches!(case.opponent, None | Some(Opponent::Equal)) || case.sphere.flat {
         return Some("neither on a plane nor on an equal sphere");
     }
+    if !case.sphere.equator.is_clamped() {
+        return Some("with a free equator");
+    }
     match case.contact.friction {
         Friction::Coefficient(mu) if mu > 0.0 => {}
         Friction::Coefficient(_) => return Some("without friction"),

@@ -24,7 +24,7 @@ use self::outputs::{NUMBERS, Outputs};
 use self::process::{InputPoint, Process};
 use super::LawError;
 use super::json;
-use super::range::{Interval, MARGIN, OutOfRange};
+use super::range::{Interval, MARGIN, OutOfRange, clamped};
 use super::report::RegionError;
 use super::table::{self, Against, Tabulated, equivalent};
 use super::variables::{Body, yield_lambda};
@@ -211,6 +211,7 @@ impl Interpolated {
     /// # Errors
     /// Full stick; another opponent than that of the law; no numbers for this material.
     pub fn table(&self, case: &Case) -> Result<Tabulated, LawError> {
+        clamped(case)?;
         let against = Against::of(case);
         if against != self.body || case.sphere.flat {
             return Err(LawError::OtherOpponent { case: against, law: self.body });
@@ -232,6 +233,7 @@ impl Interpolated {
     /// # Errors
     /// Those of [`table`](Self::table) and of [`compose`](table::compose).
     pub fn compose(&self, case: &Case) -> Result<Tabulated, LawError> {
+        clamped(case)?;
         if let Some(law) = self.of_equal_spheres(case) {
             return law.compose(case);
         }

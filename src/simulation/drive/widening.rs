@@ -31,18 +31,24 @@ impl Drive<'_> {
             }
         };
         let r = &self.state.record;
+        self.state.equator = Some(equator);
+        if r.contact_points == 0 {
+            // The body moves with the plate as it is.
+            self.state.stretch = self.state.pose.stretch;
+            return Ok(());
+        }
         let last = self.state.last_increment.filter(|_| target.extrapolate);
         let ratio = last.and_then(|last| {
             let pressed = || (last.h != 0.0).then(|| (target.h - r.h) / last.h);
             self.way_ratio(target, &last).or_else(pressed)
         });
-        (self.state.stretch, self.state.equator) = (equator.expected(ratio), Some(equator));
+        self.state.stretch = equator.expected(ratio);
         Ok(())
     }
 }
 
-/// Solves a step; where the plate is free, again until it exerts next to nothing along itself. The
-/// pose of `control` is then that of the solution.
+/// Solves a step; where the plate is free and something touches, again until it exerts next to
+/// nothing as it widens. The pose of `control` is then that of the solution.
 pub(super) fn solve(
     newton: &mut Newton,
     handle: &mut CaseHandle<'_>,
@@ -52,20 +58,26 @@ pub(super) fn solve(
 ) -> Result<StepOutcome, SolverError> {
     let mut outcome = newton.solve(handle, start, control)?;
     let Some(equator) = equator else { return Ok(outcome) };
-    for _ in 0..REPEATS {
-        let StepOutcome::Converged(made) = outcome else { break };
+    for repeat in 0..=REPEATS {
+        let StepOutcome::Converged(mut made) = outcome else { break };
         let stretch = control.pose.stretch;
         let freed = equator.freed(&newton.outward(&control.pose), &stretch);
-        if equator.is_near(&freed, &stretch) {
+        let is_near = newton.accepted().force_scale == 0.0 || equator.is_near(&freed, &stretch);
+        if is_near || repeat == REPEATS {
+            made.relaxed |= !is_near;
             return Ok(StepOutcome::Converged(made));
         }
-        let (guess, h) = (newton.accepted().u.clone(), newton.accepted_h());
+        let (guess, h, came_off) = (newton.accepted().u.clone(), newton.accepted_h(), newton.came_off().to_vec());
         (control.pose.stretch, control.h) = (freed, h);
-        log::debug!("  the plate exerts forces along itself: it widens by {freed:?} in place of {stretch:?}");
-        let again = newton.solve(handle, &SetOut { guess: Some(&guess), extrapolation: None, ..*start }, control)?;
+        log::debug!("  the plate resists its widening: solved again with {freed:?} in place of {stretch:?}");
+        let again =
+            newton.solve(handle, &SetOut { guess: Some(&guess), extrapolation: None, came_off: &came_off, ..*start }, control)?;
         outcome = match again {
-            StepOutcome::Converged(report) => StepOutcome::Converged(report.joined(made)),
-            StepOutcome::Failed(failure) => StepOutcome::Failed(failure),
+            StepOutcome::Converged(report) => StepOutcome::Converged(report.again_after(made)),
+            StepOutcome::Failed(failure) => {
+                newton.give_up(made);
+                StepOutcome::Failed(failure)
+            }
         };
     }
     Ok(outcome)

@@ -201,6 +201,11 @@ impl HostIterate {
         landed
     }
 
+    /// Which contact points have come off within the step.
+    pub fn came_off(&self) -> &[bool] {
+        &self.came_off
+    }
+
     /// Moves the body, which touches nothing, with the plate; its forces turn with it.
     fn follow_plate(&mut self, mesh: &Mesh, start: &SetOut<'_>, control: &Control) {
         let own = self.boundary.own_nodes;

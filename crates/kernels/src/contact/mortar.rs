@@ -8,7 +8,7 @@
 //! shape functions of the other nodes. A face that the seam x = 0 cuts has shape functions for psi,
 //! those of its nodes that are no slaves added to those that are, so that the psi of all slaves add
 //! up to one everywhere. Faces are clipped against the image's faces (Sutherland & Hodgman, Commun.
-//! ACM 17, 1974; see [`super::polygon`]) and integrated triangle by triangle.
+//! ACM 17, 1974; see `polygon`) and integrated triangle by triangle.
 
 use super::polygon::{MOST_POINTS, Point, area, clip, clip_at_seam, each_point, gauss_rules};
 
