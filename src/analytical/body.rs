@@ -9,10 +9,11 @@
 //! c_T F_T/(G R)     along the surface,  c_T = c_0 + c_1 ln(a/R)
 //! ```
 //!
-//! The logarithm is that of a curved surface. At a below 0.04 R `asperity verify` finds 0.55 a/R more
-//! F_N at a given h, c_N = -0.25: here the next power of a/R is in it. The constants are fits to elastic simulations with a
-//! from 0.05 to 0.2 R and nu from 0 to 0.45, which `benches/turning/body.py` makes; of spheres they
-//! meet 1/k_T0 to 2 % and h to 0.9 %. R is the sphere's radius; a flat is half a ball of 2 R.
+//! The logarithm is that of a curved surface. At a below 0.04 R `asperity verify` finds 0.55 a/R
+//! more F_N at a given h, c_N = -0.25: here the next power of a/R is in it. The constants are
+//! fits to elastic simulations with a from 0.05 to 0.2 R and nu from 0 to 0.45, which
+//! `benches/turning/body.py` makes; of spheres they meet 1/k_T0 to 2 % and h to 0.9 %. R is the
+//! sphere's radius; a flat is half a ball of 2 R.
 
 /// How a body is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
