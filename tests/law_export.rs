@@ -52,6 +52,7 @@ fn made_up() -> Law {
             program: "asperity".to_owned(),
             study: "made */ up \"\"\" \\".to_owned(),
             cases: 12,
+            raw: 0,
             left_out: vec![],
             materials: 3,
             elements_per_contact_radius: (5, 6),

@@ -17,6 +17,7 @@ use super::law_tabulate::{TabulateArgs, tabulate};
 use super::{CliError, Exit, print, print_json};
 use crate::case::{Case, Segment};
 use crate::contact_law::path::PathPoint;
+use crate::law::data::raw_sentence;
 use crate::law::file::BUILT_IN;
 use crate::law::formulas::fit::fit;
 use crate::law::formulas::predict::{NormalSource, Prediction, predict};
@@ -158,14 +159,15 @@ fn summary_of_interpolation(law: &Interpolated) -> String {
         [law.normal_errors.f_n0[0], law.normal_errors.f_n0[1], law.normal_errors.a0[0], law.normal_errors.a0[1]]
             .map(|x| 100.0 * x);
     let mut text = format!(
-        "{} cases of {} materials on {}, {} elements per contact radius, {} left out\n\n\
+        "{} cases of {} materials on {}, {} elements per contact radius, {} left out\n{}\n\
          Errors from h alone, each material from the others, in per cent\n\
          F_N0 rms     max   a0 rms     max\n{f:>8.2} {f_max:>7.2} {a:>8.2} {a_max:>7.2}\n\n",
         source.cases,
         source.materials,
         law.body,
         source.elements_per_contact_radius,
-        source.left_out.len()
+        source.left_out.len(),
+        raw_sentence(source.raw)
     );
     text.push_str(&report::region_table("F_T of its peak, F_N of F_N0", &law.errors));
     text
@@ -176,12 +178,13 @@ fn summary(law: &Law, verbose: bool) -> String {
     let p = &law.provenance;
     let (coarsest, finest) = p.elements_per_contact_radius;
     let mut text = format!(
-        "{} cases of {} materials, {coarsest} to {finest} elements per contact radius, {} left out; {} folds, whole materials left out (seed {})\n\n",
+        "{} cases of {} materials, {coarsest} to {finest} elements per contact radius, {} left out; {} folds, whole materials left out (seed {})\n{}\n",
         p.cases,
         p.materials,
         p.left_out.len(),
         p.folds,
-        p.seed
+        p.seed,
+        raw_sentence(p.raw)
     );
     if let Some(prior) = &p.prior {
         let weight = |weight: Option<f64>| weight.map_or_else(|| "none".to_owned(), |weight| weight.to_string());

@@ -49,6 +49,8 @@ pub struct Sample {
     pub curve: Vec<Point>,
     /// How finely it was meshed.
     pub elements_per_contact_radius: usize,
+    /// The curve is that of its mesh: no limit of fine meshes is known.
+    pub is_raw: bool,
 }
 
 impl Sample {
@@ -108,6 +110,11 @@ impl StudyData {
         Ok(data)
     }
 
+    /// Number of samples whose curve is that of its mesh.
+    pub fn raw(&self) -> usize {
+        self.samples.iter().filter(|sample| sample.is_raw).count()
+    }
+
     /// The reasons for leaving out cases with their numbers, as one sentence; empty if there are
     /// none.
     pub fn skipped_sentence(&self) -> String {
@@ -160,7 +167,9 @@ fn read_sample(id: &str, directory: &OutputDirectory, materials: &mut Vec<Scaled
         }
         _ => return Ok(Usable::No("not pressed once and then sheared")),
     }
-    let history = at_the_limit(&read_history(&directory.history())?);
+    let history = read_history(&directory.history())?;
+    let is_raw = !is_known(&history, 1);
+    let history = at_the_limit(&history);
     let summary = Summary::from_history(&history, &SummaryInputs::of(&case));
     let (Some(h0), Some(a0), Some(f_n0), Some(delta_t_slip), Some(_)) =
         (summary.h0, summary.a0, summary.f_n0, summary.delta_t_slip, summary.f_n_slip)
@@ -196,16 +205,28 @@ fn read_sample(id: &str, directory: &OutputDirectory, materials: &mut Vec<Scaled
         variables,
         curve,
         elements_per_contact_radius: case.mesh.elements_per_contact_radius,
+        is_raw,
     })))
+}
+
+/// Whether all rows of a segment have a limit of fine meshes.
+pub fn is_known(history: &[StepRecord], segment: usize) -> bool {
+    history.iter().filter(|row| row.segment == segment).all(|row| row.f_t_limit.is_some() && row.f_n_limit.is_some())
+}
+
+/// What a law says of so many of its cases whose curves are raw; empty if there are none.
+pub fn raw_sentence(raw: usize) -> String {
+    match raw {
+        0 => String::new(),
+        _ => format!("{raw} curves are those of their meshes, not of the limit of fine meshes, which they do not have\n"),
+    }
 }
 
 /// A history at the limit of fine meshes, as far as it is known: in each segment whose rows all
 /// have one, F_N and F_T are those of the limit.
 pub fn at_the_limit(history: &[StepRecord]) -> Vec<StepRecord> {
-    let known = |segment: usize| {
-        history.iter().filter(|row| row.segment == segment).all(|row| row.f_t_limit.is_some() && row.f_n_limit.is_some())
-    };
-    let segments: Vec<bool> = (0..=history.last().map_or(0, |row| row.segment)).map(known).collect();
+    let segments: Vec<bool> =
+        (0..=history.last().map_or(0, |row| row.segment)).map(|segment| is_known(history, segment)).collect();
     let limit = |row: &StepRecord| match (row.f_t_limit, row.f_n_limit) {
         (Some(f_t), Some(f_n)) if segments.get(row.segment) == Some(&true) => StepRecord { f_n, f_t, ..*row },
         _ => *row,

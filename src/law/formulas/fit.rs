@@ -328,6 +328,7 @@ fn provenance(dir: &Path, data: &StudyData, folds: usize, prior: Option<PriorUse
         program: format!("asperity {}", env!("CARGO_PKG_VERSION")),
         study: study_name(dir),
         cases: data.samples.len(),
+        raw: data.raw(),
         left_out: data.skipped.iter().map(|skipped| (skipped.id.clone(), skipped.reason.clone())).collect(),
         materials: data.materials(),
         elements_per_contact_radius: (elements().min().unwrap_or(0), elements().max().unwrap_or(0)),

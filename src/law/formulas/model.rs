@@ -121,6 +121,9 @@ pub struct Provenance {
     pub cases: usize,
     /// Cases left out, with the reasons.
     pub left_out: Vec<(String, String)>,
+    /// Cases used whose curve is that of its mesh, and not the limit of fine meshes.
+    #[serde(default)]
+    pub raw: usize,
     /// Different materials.
     pub materials: usize,
     /// Fewest and most elements per contact radius.

@@ -30,6 +30,7 @@ pub(in crate::law) fn elastic_sample(friction: f64) -> Sample {
         variables,
         curve,
         elements_per_contact_radius: 16,
+        is_raw: false,
     }
 }
 

@@ -13,7 +13,7 @@ use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Hold, Material, Opponent, Segment};
 use crate::contact_law::{Frame, POINTS};
 use crate::law::LawError;
-use crate::law::data::study_name;
+use crate::law::data::{is_known, study_name};
 use crate::law::range::Interval;
 use crate::law::report::{CaseErrors, by_region};
 use crate::law::study_table::StudyTable;
@@ -40,6 +40,7 @@ struct Sample {
     measured: Measured,
     outputs: Outputs,
     elements: usize,
+    is_raw: bool,
 }
 
 /// What of a study can be used, and what not.
@@ -102,6 +103,7 @@ pub fn fit(dir: &Path, reversal: Option<&Interpolated>) -> Result<Interpolated, 
             materials: materials.len(),
             reversal: reversal.map(|law| law.source.study.clone()),
             left_out,
+            raw: samples.iter().filter(|s| s.is_raw).count(),
             elements_per_contact_radius: samples.iter().map(|s| s.elements).max().unwrap_or(0),
         },
         errors: Vec::new(),
@@ -240,7 +242,8 @@ fn sample(
     materials: &mut Vec<Material>,
 ) -> Result<Option<Sample>, LawError> {
     let friction = super::friction(case);
-    let Some(measured) = Measured::of(case, &read_history(&directory.history())?) else { return Ok(None) };
+    let history = read_history(&directory.history())?;
+    let Some(measured) = Measured::of(case, &history) else { return Ok(None) };
     let (body, sphere) = bodies(case)?;
     let Some(mut outputs) = outputs(&sphere, friction, &measured, Against::of(case)) else { return Ok(None) };
     let inputs = inputs(&body, &sphere, friction, measured.h);
@@ -267,5 +270,6 @@ fn sample(
         measured,
         outputs,
         elements: case.mesh.elements_per_contact_radius,
+        is_raw: !is_known(&history, 1),
     }))
 }

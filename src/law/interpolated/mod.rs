@@ -79,6 +79,9 @@ pub struct Source {
     pub reversal: Option<String>,
     /// Cases left out, with the reasons.
     pub left_out: Vec<(String, String)>,
+    /// Cases used whose curve is that of its mesh, and not the limit of fine meshes.
+    #[serde(default)]
+    pub raw: usize,
     /// Most elements along the contact radius.
     pub elements_per_contact_radius: usize,
 }
