@@ -34,6 +34,8 @@ class Mesh : public Shape {
   std::vector<Corners> given;    // in the frame of the wall
   std::vector<Triangle> triangles;
   std::vector<Node> nodes;
+  // Angles of a binary file, which has seven digits: 24 faces of a tube lie 15 degrees apart, to this.
+  static constexpr double ROUNDED = 1e-5;
   double merge;                  // cosine of the angle within which minima are one contact
   double low[3] = {}, period[3] = {};    // of the box in the frame of the wall; 0: not periodic
 
@@ -172,7 +174,7 @@ class Mesh : public Shape {
  public:
   // Coordinates are those of the file times `scale`, plus `shift`.
   Mesh(const std::string &file, double scale, const double shift[3], double merge_degrees) :
-      given(Stl::read(file, scale)), merge(cos(merge_degrees * M_PI / 180.0))
+      given(Stl::read(file, scale)), merge(cos(merge_degrees * M_PI / 180.0 + ROUNDED))
   {
     for (auto &corners : given)
       for (auto &corner : corners)

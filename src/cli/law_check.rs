@@ -23,8 +23,8 @@ pub struct CheckArgs {
     /// A law file that `law fit`, `law tabulate` or `law compose` wrote; or `built-in`.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
-    /// Material, friction and depth to check [default: those of the table; for formulas, three
-    /// materials with mu = 0.1, 0.3 and 0.6 each].
+    /// Material, friction and depth to check [default: those of the table; for a law for many
+    /// materials three of them, each with mu = 0.1, 0.3 and 0.6].
     #[arg(value_name = "CASE.toml")]
     pub case: Option<PathBuf>,
     /// Elements along the contact radius of the simulations; twice as many at the surface.
