@@ -3,27 +3,23 @@
 
 #[path = "common/followed.rs"]
 mod followed;
+#[path = "common/pressed.rs"]
+mod pressed;
 
 use asperity::output::StepRecord;
+use pressed::CASE;
 
 const NU: f64 = 0.3;
 const MU: f64 = 0.3;
-const CASE: &str = "
-[sphere]
-radius = 1.0
-[material]
-youngs_modulus = 1000.0
-poissons_ratio = 0.3
-[material.hardening]
-law = \"elastic\"
-[contact]
-friction = 0.3
-[mesh]
-elements_per_contact_radius = 6
-surface_elements_per_contact_radius = 12
-[solver]
-error_estimate = false
-";
+/// Elastic, on a finer mesh, along this path.
+fn rows(settings: &[&str]) -> Vec<StepRecord> {
+    let elastic = [
+        "material.hardening={law=\"elastic\"}",
+        "mesh.elements_per_contact_radius=6",
+        "mesh.surface_elements_per_contact_radius=12",
+    ];
+    followed::rows(CASE, &[&elastic[..], settings].concat())
+}
 
 /// F_T/(mu F_N) of two half-spaces with as much give as `compliance` of one body of E = 1000 along
 /// the surface, at a displacement (Cattaneo 1938, Mindlin 1949).
@@ -60,7 +56,7 @@ fn the_contact_alone_is_one_of_half_spaces() {
     ] {
         let path = format!("path=[{{indentation=0.02}},{held}]");
         let settings: Vec<&str> = settings.iter().map(String::as_str).chain([path.as_str()]).collect();
-        let found = differences(&followed::rows(CASE, &settings), 0.5, 2.0);
+        let found = differences(&rows(&settings), 0.5, 2.0);
         eprintln!("{what}: F_T {:.4} ({:.4} by delta_T), F_N {:.4} ({:.4} by h)", found[0], found[1], found[2], found[3]);
         assert!(found[0] < 0.02 && found[1] > 0.05, "{what}: {found:?}");
         assert!(found[2] < 0.01 && found[3] > 0.02, "{what}: {found:?}");
@@ -71,7 +67,7 @@ fn the_contact_alone_is_one_of_half_spaces() {
 fn each_body_has_its_share() {
     let path = "path=[{indentation=0.01},{shear=0.002}]";
     let share = |settings: &[&str]| {
-        let rows = followed::rows(CASE, &[settings, &[path, "mesh.surface_elements_per_contact_radius=6"]].concat());
+        let rows = rows(&[settings, &[path, "mesh.surface_elements_per_contact_radius=6"]].concat());
         let end = *rows.last().expect("rows");
         ((end.h - end.h_contact) / end.f_n, (end.delta_t - end.delta_t_contact) / end.f_t, end.a)
     };
@@ -85,8 +81,7 @@ fn each_body_has_its_share() {
         assert!((other.1 / one.1 / by_radius - 1.0).abs() < 1e-3, "{other:?} {one:?}");
     }
     // Along y alone, the share is along y.
-    let rows =
-        followed::rows(CASE, &["path=[{indentation=0.01},{shear=[0.0,0.002]}]", "mesh.surface_elements_per_contact_radius=6"]);
+    let rows = rows(&["path=[{indentation=0.01},{shear=[0.0,0.002]}]", "mesh.surface_elements_per_contact_radius=6"]);
     let end = rows.last().expect("rows");
     assert!((end.delta_t_y - end.delta_t_y_contact) / end.f_t_y > 0.9 * one.1 && end.delta_t_contact.abs() < 1e-9);
 }

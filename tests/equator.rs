@@ -3,29 +3,14 @@
 
 #[path = "common/followed.rs"]
 mod followed;
+#[path = "common/pressed.rs"]
+mod pressed;
 
 use asperity::case::Case;
 use asperity::law::LawFile;
 use asperity::output::StepRecord;
+use pressed::CASE;
 
-const CASE: &str = "
-[sphere]
-radius = 1.0
-[material]
-youngs_modulus = 1000.0
-poissons_ratio = 0.3
-[material.hardening]
-law = \"ideal\"
-yield_stress = 16.67
-[contact]
-friction = 0.3
-[mesh]
-elements_per_contact_radius = 5
-[solver]
-error_estimate = false
-[[path]]
-indentation = 0.09
-";
 const FREE: &str = "sphere.equator=\"free\"";
 
 fn rows(settings: &[&str]) -> Vec<StepRecord> {

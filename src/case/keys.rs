@@ -141,8 +141,8 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "\"clamped\" or \"free\"",
-        meaning: "whether the equatorial plane may widen. Clamped, it moves as a rigid plate; free, it widens under load, as does \
-                  the mid-plane of a sphere that is pressed equally from both sides; refused for a flat and where two bodies \
+        meaning: "whether the equatorial plane may widen. Clamped, it moves as a rigid plate; free, it widens under load, as \
+                  does the mid-plane of a sphere that is pressed equally from both sides; refused for a flat and where two bodies \
                   are meshed",
         example: "\"free\"",
         ..key("sphere", "equator", Word(&["clamped", "free"]), Defaults("\"clamped\""))
@@ -238,7 +238,8 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: ">= 0, or \"stick\"",
-        meaning: "Coulomb's coefficient mu, which holds at every point; with \"stick\", points do not slip; only if a step does not converge may some of them slide",
+        meaning: "Coulomb's coefficient mu, which holds at every point; with \"stick\", points do not slip; only if a step does \
+                  not converge may some of them slide",
         example: "0.3",
         ..key("contact", "friction", Number(AtLeast(0.0), Free, &["stick"]), Required)
     },
@@ -451,7 +452,8 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         unit: LENGTH,
-        range: ">= 0; the first press > 0; < 0.3 R, on an unequal sphere < 0.3 R* too; the deepest of the path >= 2.5e-7 R^2/R*",
+        range: ">= 0; the first press > 0; < 0.3 R, on an unequal sphere < 0.3 R* too; the deepest of the path >= 2.5e-7 \
+                R^2/R*",
         meaning: "press to this indentation h, counted from first touch, or unload to it if it is smaller than the present \
                   h",
         example: "0.02",
@@ -490,7 +492,8 @@ pub const KEYS: &[Key] = &[
         unit: "rad",
         range: "-0.5 to 0.5, or [about_x, about_y] of such angles",
         meaning: "roll the sphere to this total angle about y, of either sign, or to two angles about x and y, for \
-                  which the whole sphere is meshed; the centre travels by (R - h) times the angle, so that delta_T does not change; refused for a flat and under full stick",
+                  which the whole sphere is meshed; the centre travels by (R - h) times the angle, so that delta_T does not \
+                  change; refused for a flat and under full stick",
         example: "0.02",
         ..key("path", "roll", Components(&[]), Optional("the sphere does not roll"))
     },

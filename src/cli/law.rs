@@ -178,7 +178,8 @@ fn summary(law: &Law, verbose: bool) -> String {
     let p = &law.provenance;
     let (coarsest, finest) = p.elements_per_contact_radius;
     let mut text = format!(
-        "{} cases of {} materials, {coarsest} to {finest} elements per contact radius, {} left out; {} folds, whole materials left out (seed {})\n{}\n",
+        "{} cases of {} materials, {coarsest} to {finest} elements per contact radius, {} left out; {} folds, whole \
+         materials left out (seed {})\n{}\n",
         p.cases,
         p.materials,
         p.left_out.len(),

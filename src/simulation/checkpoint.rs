@@ -35,9 +35,9 @@ pub(super) struct Committed {
     pub pose: Pose,
     pub pose_before: Pose,
     pub h_before: f64,
-    /// How a plate that is free along itself is to have widened at the end of the next step.
+    /// How far a free equator is to have widened at the end of the next step.
     pub stretch: [f64; MODES],
-    /// What is known of how it widens; none of a rigid one.
+    /// What is known of how it widens; none of a clamped one.
     pub equator: Option<FreeEquator>,
     /// How far the centre has moved with what the sphere has rolled.
     pub travel: [f64; 2],

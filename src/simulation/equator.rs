@@ -1,9 +1,9 @@
-//! A plate that is free along itself: how far it widens.
+//! A free equator: how far its plate widens.
 //!
 //! Where a whole sphere is pressed from both sides, its equator is a plane of symmetry: it stays
-//! plane, and exerts nothing along itself. Its nodes move along its normal as one and outwards by a
-//! polynomial (see [`crate::solver::pose`]) whose coefficients are such that the plate does no work
-//! on the motion of any of its terms. The body is elastic there, so one matrix, found once, says
+//! plane, and no shear acts in it. Its nodes move along its normal as one and outwards by a
+//! polynomial (see [`crate::solver::pose`]) whose coefficients are such that the generalised force
+//! of each term is zero. The body is elastic there, so one matrix, found once, says
 //! what a coefficient changes of those forces. A step sets out with the coefficients that the last
 //! two lead to, and is solved again where they miss by more than a share of the largest so far.
 

@@ -1,4 +1,4 @@
-//! The steps of a plate that is free along itself.
+//! The steps of a sphere with a free equator.
 
 use super::Drive;
 use crate::case::Equator;

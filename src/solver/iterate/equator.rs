@@ -1,5 +1,4 @@
-//! What a plate that is free along itself has to overcome: the forces that its widening makes in
-//! the body.
+//! The forces that the widening of a free equator makes in the body.
 
 use super::host::HostIterate;
 use super::linearise::form;

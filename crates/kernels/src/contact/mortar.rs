@@ -39,6 +39,7 @@ const MARGIN: f64 = 0.25;
 pub(super) const SLIVER: f64 = 1e-9;
 /// A node that faces its own image with more than this weight lies on the seam.
 const OWN_IMAGE: f64 = 0.25;
+
 /// The weights of all slave nodes: those at x >= 0, or not far beyond the seam for their `size`,
 /// whose faces meet the image. `points` are the positions of the surface's nodes in the plane,
 /// `faces` its quadrilaterals (either sense of rotation), `tolerance` the distance to the seam that
@@ -352,6 +353,7 @@ fn dual_of(mass: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
 const EXACT: f64 = 1e-12;
 /// A step of Newton's iteration after which the next would be rounding.
 const NEARLY: f64 = 1e-7;
+
 /// Calls `f` with weights and shape functions on both faces at the points of a rule over a convex
 /// polygon that lies on them.
 ///
