@@ -142,8 +142,8 @@ pub const KEYS: &[Key] = &[
     Key {
         range: "\"clamped\" or \"free\"",
         meaning: "whether the equatorial plane may widen. Clamped, it moves as a rigid plate; free, it widens under load, as \
-                  does the mid-plane of a sphere that is pressed equally from both sides; refused for a flat and where two bodies \
-                  are meshed",
+                  does the mid-plane of a sphere pressed equally from both sides; refused for a flat and where two bodies are \
+                  meshed",
         example: "\"free\"",
         ..key("sphere", "equator", Word(&["clamped", "free"]), Defaults("\"clamped\""))
     },
