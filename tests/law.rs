@@ -95,6 +95,9 @@ fn fit_and_predict_through_the_program() {
     );
     let fitted = asperity(&["law", "fit", "--verbose", text(folder.path())]).code(0);
     let printed = String::from_utf8_lossy(&fitted.get_output().stdout).into_owned();
+    // Its histories have no limit of fine meshes, and both say so.
+    let raw = "36 curves are those of their meshes";
+    assert!(short.contains(raw) && printed.contains(raw), "{short}\n{printed}");
     for expected in ["36 cases of 8 materials", "Jaeger-Ciavarella", "the study alone", "F_N_slip/F_N0", "mu 0.2 to 0.4"] {
         assert!(printed.contains(expected), "{expected} is missing in\n{printed}");
     }

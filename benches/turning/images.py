@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Processor time of a path on the whole mesh over that on half of it, and of an equal pair by its image over two bodies.
 
-    python3 benches/turning/images.py OUT [--elements 4] [--repeats 3] [--program target/release/asperity]
+    python3 benches/turning/images.py OUT [--elements 4] [--repeats 3] [--images-only] [--program target/release/asperity]
 
 Ideally plastic, E/sigma_Y = 500, mu = 0.3, pressed to h = 0.02 R and then moved, on one thread, with twice the elements at
 the surface. Of so many runs the fastest counts. `whole` is a shear along x with a displacement across it of 1e-14 R: the
@@ -47,11 +47,12 @@ def main():
     parser = arguments(__doc__, out="needed")
     parser.add_argument("--elements", type=int, default=4)
     parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--images-only", action="store_true", help="no two bodies, which take most of the time")
     args = parsed(parser)
     os.environ["RAYON_NUM_THREADS"] = "1"
     mesh = f"elements_per_contact_radius = {args.elements}\nsurface_elements_per_contact_radius = {2 * args.elements}"
     print("| opponent | path | processor time, s | over a shear along x | F_N | F_T or moment |\n|---|---|---|---|---|---|")
-    for i, (opponent, table, moves) in enumerate(RUNS):
+    for i, (opponent, table, moves) in enumerate(RUNS[: 2 if args.images_only else 3]):
         first = None
         for j, name in enumerate(moves):
             motion, column = MOVES[name]

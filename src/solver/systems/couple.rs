@@ -18,7 +18,7 @@ use crate::contact::coulomb::Status;
 use crate::contact::couple::CoupleInterface;
 use crate::contact::interface::{Interface, Symmetry};
 use crate::linalg::fgmres::System;
-use crate::linalg::fold::{Fold, Parity};
+use crate::linalg::fold::{Fold, Folding, Parity};
 use crate::linalg::{BlockMatrix, Hierarchy, LinalgError, Pattern};
 use crate::mesh::Mesh;
 use crate::solver::contact_rows::{apply_rows, turn_node};
@@ -73,9 +73,9 @@ impl Body {
         let half = match half {
             Some(half) if !mirror.is_empty() => {
                 let own: Vec<u32> = mirror[nodes.clone()].iter().map(|n| n - nodes.start as u32).collect();
-                match Fold::new(&pattern, &half.node, &own, 0) {
+                match Fold::new(&pattern, &half.node, &own) {
                     Some(fold) => {
-                        let hierarchy = Hierarchy::new(&fold.matrix.pattern, &half.hierarchy)?;
+                        let hierarchy = Hierarchy::new(&fold.matrix().pattern, &half.hierarchy)?;
                         Some((fold, HalfCycle::new(Parity::Even, hierarchy, half.node.len())))
                     }
                     None => None,

@@ -1,10 +1,10 @@
-//! A V-cycle on half of a body, for what is even or odd in x, or in y.
+//! A V-cycle on half of a body, for what is even or odd in x, or under a half turn round z.
 
 use super::tied::clear;
-use crate::linalg::fold::{Fold, Parity};
+use crate::linalg::fold::{Folding, Parity};
 use crate::linalg::{Hierarchy, LinalgError};
 
-/// The preconditioner of one parity, on a body folded at x = 0.
+/// The preconditioner of one parity, on a body that is folded.
 #[derive(Debug)]
 pub(super) struct HalfCycle {
     parity: Parity,
@@ -22,36 +22,30 @@ impl HalfCycle {
         Self { parity, hierarchy, fixed: vec![false; n], load: vec![0.0; n], z: vec![0.0; n] }
     }
 
-    /// Fixes what the whole body has `fixed` on both sides, and what the parity has none of on the
-    /// mirror.
-    pub fn fix(&mut self, fold: &Fold, fixed: &[bool]) {
-        folded_fixed(fold, self.parity, fixed, &mut self.fixed);
+    /// Fixes what the whole body has `fixed` on both sides, and what the parity has none of where
+    /// they meet. What is fixed on one side alone has to be free for the other.
+    pub fn fix(&mut self, fold: &impl Folding, fixed: &[bool]) {
+        for ((a, folded), nodes) in self.fixed.as_chunks_mut::<3>().0.iter_mut().enumerate().zip(fold.nodes()) {
+            let [own, opposite] = nodes.map(|n| 3 * n as usize);
+            for (c, folded) in folded.iter_mut().enumerate() {
+                *folded = !fold.is_free(self.parity, a, c) || fixed[own + c] && fixed[opposite + c];
+            }
+        }
     }
 
     /// Takes over the folded matrix, with what is fixed.
     ///
     /// # Errors
     /// As [`Hierarchy::update`].
-    pub fn update(&mut self, fold: &Fold) -> Result<(), LinalgError> {
-        self.hierarchy.update(&fold.matrix, &self.fixed)
+    pub fn update(&mut self, fold: &impl Folding) -> Result<(), LinalgError> {
+        self.hierarchy.update(fold.matrix(), &self.fixed)
     }
 
     /// Adds to the whole body's `u` what a V-cycle makes of its forces `f`.
-    pub fn add<R: Into<f64> + Copy + Sync>(&mut self, fold: &Fold, f: &[R], u: &mut [f64]) {
+    pub fn add<R: Into<f64> + Copy + Sync>(&mut self, fold: &impl Folding, f: &[R], u: &mut [f64]) {
         fold.fold(self.parity, f, &mut self.load);
         clear(&self.fixed, &mut self.load);
         self.hierarchy.v_cycle(&self.load, &mut self.z);
         fold.unfold_add(self.parity, &self.z, u);
-    }
-}
-
-/// What is `fixed` of a body that is folded: what is so on both sides, and what the parity has none
-/// of on the mirror. What is fixed on one side alone has to be free for the other.
-pub(super) fn folded_fixed(fold: &Fold, parity: Parity, fixed: &[bool], folded: &mut [bool]) {
-    for ((a, folded), nodes) in folded.as_chunks_mut::<3>().0.iter_mut().enumerate().zip(fold.nodes()) {
-        let [own, opposite] = nodes.map(|n| 3 * n as usize);
-        for (c, folded) in folded.iter_mut().enumerate() {
-            *folded = !fold.is_free(parity, a, c) || fixed[own + c] && fixed[opposite + c];
-        }
     }
 }

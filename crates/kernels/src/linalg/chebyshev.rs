@@ -5,6 +5,7 @@ use wide::f32x4;
 use super::bsr::BlockMatrix;
 use super::kernel::{Inverse, Node, inverse_times, row_times};
 use super::parallel::{each, each_of_two};
+use super::ties::Ties;
 use crate::lanes::array;
 use crate::mesh::pattern::Pattern;
 
@@ -31,6 +32,8 @@ pub(super) struct Smoother {
     low: f32,
     /// The matrix that it smooths with where that is rounded.
     rounded: Option<BlockMatrix<f32>>,
+    /// Nodes that are tied to each other.
+    pub ties: Ties,
     /// Inverses of the diagonal blocks.
     inverse: Vec<Inverse>,
     /// Last step of the recurrence, and the next iterate.
@@ -46,6 +49,7 @@ impl Smoother {
             degree: degree.max(1),
             low,
             rounded: None,
+            ties: Ties::default(),
             inverse: vec![[[0.0; 4]; 3]; rows],
             step: vec![[0.0; 4]; rows],
             next: vec![[0.0; 4]; rows],
@@ -73,6 +77,7 @@ impl Smoother {
                 *inverse = invert(&blocks[diagonal[i] as usize]);
             }
         });
+        self.ties.invert(&self.matrix, changed, &mut self.inverse);
     }
 
     /// x = the polynomial applied to b from x = 0.
@@ -95,12 +100,17 @@ impl Smoother {
     /// Algorithm 12.1, for D^-1 A x = D^-1 b.
     fn smooth_with(&mut self, b: &[Node], x: &mut Vec<Node>, from_zero: bool) {
         let (matrix, inverse) = (self.rounded.as_ref().unwrap_or(&self.matrix), &self.inverse);
+        let ties = &self.ties;
         for (k, [keep, add]) in shares(HIGH, self.low).take(self.degree).enumerate() {
             let (keep4, add4) = (f32x4::splat(keep), f32x4::splat(add));
             if k > 0 || !from_zero {
                 let now: &[Node] = x;
                 each_of_two(&mut self.step, &mut self.next, |i, d, next| {
                     let r = f32x4::new(b[i]) - row_times(matrix, i, now);
+                    if ties.is_tied(i) {
+                        *next = r.to_array();
+                        return;
+                    }
                     let mut step = add4 * inverse_times(&inverse[i], r);
                     if k > 0 {
                         step += keep4 * f32x4::new(*d);
@@ -108,12 +118,19 @@ impl Smoother {
                     *d = step.to_array();
                     *next = (f32x4::new(now[i]) + step).to_array();
                 });
+                let keep = if k > 0 { keep } else { 0.0 };
+                ties.smooth(inverse, Some(now), [keep, add], (&mut self.step, &mut self.next));
                 std::mem::swap(x, &mut self.next);
             } else {
                 each_of_two(&mut self.step, x, |i, d, x| {
+                    if ties.is_tied(i) {
+                        *x = b[i];
+                        return;
+                    }
                     *d = (add4 * inverse_times(&inverse[i], f32x4::new(b[i]))).to_array();
                     *x = *d;
                 });
+                ties.smooth(inverse, None, [0.0, add], (&mut self.step, x));
             }
         }
     }

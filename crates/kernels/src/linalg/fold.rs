@@ -1,5 +1,5 @@
-//! A body that is its own mirror image in x (or in y), folded at x = 0: what moves evenly in x, or
-//! oddly, is known from half of its nodes. A folded body may be folded again, in y.
+//! A body that is its own mirror image in x, folded at x = 0: what moves evenly in x, or oddly, is
+//! known from half of its nodes.
 //!
 //! An even field has `u(-x) = S u(x)` with S = diag(-1, 1, 1), and no u_x at x = 0; an odd one has
 //! -S, and u_x alone there. If E makes the whole field of the half, the half has the matrix
@@ -12,7 +12,7 @@ use super::parallel::{each, each_row};
 /// How a field is carried over to the other side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parity {
-    /// As by a mirror.
+    /// As by the mirror, or the half turn, that takes one side to the other.
     Even,
     /// The opposite of that.
     Odd,
@@ -22,25 +22,46 @@ impl Parity {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Even, Self::Odd];
 
-    /// Sign that a component has on the other side of a mirror in `axis`.
-    fn sign(self, axis: usize, component: usize) -> f32 {
-        if (component == axis) == (self == Self::Even) { -1.0 } else { 1.0 }
+    /// Sign that a component has on the other side of the mirror.
+    fn sign(self, component: usize) -> f32 {
+        if (component == 0) == (self == Self::Even) { -1.0 } else { 1.0 }
     }
 
-    /// Whether a component is free on the mirror in `axis`.
-    fn is_free_on_mirror(self, axis: usize, component: usize) -> bool {
-        (component != axis) == (self == Self::Even)
+    /// Whether a component is free on the mirror.
+    fn is_free_on_mirror(self, component: usize) -> bool {
+        (component != 0) == (self == Self::Even)
     }
 }
 
-/// Sign that a component of a node gets when it is folded in `axis`, if it is to the `left`.
-/// Coupled to a component of a node on the mirror it has the parity in which that one is free; else
-/// either will do.
-fn sign(axis: usize, left: bool, component: usize, on_mirror: Option<usize>) -> f32 {
+/// A body folded to half of its nodes.
+pub trait Folding {
+    /// The folded matrix.
+    fn matrix(&self) -> &BlockMatrix<f32>;
+
+    /// Nodes of the whole mesh of a node of the half: its own, and that on the other side.
+    fn nodes(&self) -> &[[u32; 2]];
+
+    /// Whether a component of a node of the half is free in fields of a parity.
+    fn is_free(&self, parity: Parity, node: usize, component: usize) -> bool;
+
+    /// Folds a matrix.
+    fn update(&mut self, whole: &BlockMatrix<f32>);
+
+    /// The forces `E^T f` of a whole body's `f` (three a node).
+    fn fold<R: Into<f64> + Copy + Sync>(&self, parity: Parity, f: &[R], folded: &mut [f32]);
+
+    /// Adds the whole body's displacements `E z` of a half's `z` to `u`.
+    fn unfold_add<R: Into<f64> + Copy>(&self, parity: Parity, z: &[R], u: &mut [f64]);
+}
+
+/// Sign that a component of a node gets when it is folded, if it is to the `left`. Coupled to a
+/// component of a node on the mirror it has the parity in which that one is free; else either will
+/// do.
+fn sign(left: bool, component: usize, on_mirror: Option<usize>) -> f32 {
     match (left, on_mirror) {
         (false, _) => 1.0,
-        (true, Some(c)) if c == axis => Parity::Odd.sign(axis, component),
-        (true, _) => Parity::Even.sign(axis, component),
+        (true, Some(0)) => Parity::Odd.sign(component),
+        (true, _) => Parity::Even.sign(component),
     }
 }
 
@@ -48,13 +69,13 @@ fn sign(axis: usize, left: bool, component: usize, on_mirror: Option<usize>) -> 
 const KINDS: usize = 16;
 
 /// The signs that the entries of each kind of block get.
-fn signs(axis: usize) -> [[f32; 9]; KINDS] {
+fn signs() -> [[f32; 9]; KINDS] {
     std::array::from_fn(|kind| {
         let [left_row, left_column, row_at_zero, column_at_zero] = [1, 2, 4, 8].map(|bit| kind & bit != 0);
         std::array::from_fn(|m| {
             let (r, c) = (m / 3, m % 3);
-            let by_row = sign(axis, left_row, r, column_at_zero.then_some(c));
-            by_row * sign(axis, left_column, c, row_at_zero.then_some(r))
+            let by_row = sign(left_row, r, column_at_zero.then_some(c));
+            by_row * sign(left_column, c, row_at_zero.then_some(r))
         })
     })
 }
@@ -66,8 +87,7 @@ fn signs(axis: usize) -> [[f32; 9]; KINDS] {
 /// and has that parity's sign; in the other it is fixed, and no use is made of it.
 #[derive(Clone, Debug)]
 pub struct Fold {
-    /// The folded matrix.
-    pub matrix: BlockMatrix<f32>,
+    matrix: BlockMatrix<f32>,
     /// Whole-mesh nodes of each node of the half: at x >= 0 and opposite; the same at x = 0.
     nodes: Vec<[u32; 2]>,
     /// Per block of the whole matrix, its place in the row of the half, and which of the `signs`
@@ -76,15 +96,13 @@ pub struct Fold {
     kind: Vec<u8>,
     /// Of each kind of block, the signs of its entries.
     signs: [[f32; 9]; KINDS],
-    /// Of the coordinate in which it is folded.
-    axis: usize,
 }
 
 impl Fold {
-    /// Plans the fold in coordinate `axis` (0 for x, 1 for y) of matrices with a `pattern` to the
-    /// nodes `half` (at x >= 0); `mirror` is the node opposite in it of each node. `None` if they
-    /// do not fit each other, or if blocks couple the two sides.
-    pub fn new(pattern: &Pattern, half: &[u32], mirror: &[u32], axis: usize) -> Option<Self> {
+    /// Plans the fold of matrices with a `pattern` to the nodes `half` (at x >= 0); `mirror` is the
+    /// node opposite of each node. `None` if they do not fit each other, or if blocks couple the
+    /// two sides.
+    pub fn new(pattern: &Pattern, half: &[u32], mirror: &[u32]) -> Option<Self> {
         let mut folded = vec![u32::MAX; pattern.rows()];
         let mut nodes = Vec::with_capacity(half.len());
         for (a, &node) in half.iter().enumerate() {
@@ -122,22 +140,25 @@ impl Fold {
                 kind.push(left[0] | left[1] << 1 | at_zero[0] << 2 | at_zero[1] << 3);
             }
         }
-        Some(Self { matrix, nodes, place, kind, signs: signs(axis), axis })
+        Some(Self { matrix, nodes, place, kind, signs: signs() })
+    }
+}
+
+impl Folding for Fold {
+    fn matrix(&self) -> &BlockMatrix<f32> {
+        &self.matrix
     }
 
-    /// Nodes of the whole mesh of a node of the half: at x >= 0 and opposite.
-    pub fn nodes(&self) -> &[[u32; 2]] {
+    fn nodes(&self) -> &[[u32; 2]] {
         &self.nodes
     }
 
-    /// Whether a component of a node of the half is free in fields of a parity.
-    pub fn is_free(&self, parity: Parity, node: usize, component: usize) -> bool {
+    fn is_free(&self, parity: Parity, node: usize, component: usize) -> bool {
         let [own, opposite] = self.nodes[node];
-        own != opposite || parity.is_free_on_mirror(self.axis, component)
+        own != opposite || parity.is_free_on_mirror(component)
     }
 
-    /// Folds a matrix.
-    pub fn update(&mut self, whole: &BlockMatrix<f32>) {
+    fn update(&mut self, whole: &BlockMatrix<f32>) {
         let (nodes, place, kind, signs) = (&self.nodes, &self.place, &self.kind, &self.signs);
         let BlockMatrix { pattern, blocks } = &mut self.matrix;
         let mut nothing = vec![(); nodes.len()];
@@ -157,14 +178,13 @@ impl Fold {
         });
     }
 
-    /// The forces `E^T f` of a whole body's `f` (three a node).
-    pub fn fold<R: Into<f64> + Copy + Sync>(&self, parity: Parity, f: &[R], folded: &mut [f32]) {
-        let signs = [0, 1, 2].map(|c| f64::from(parity.sign(self.axis, c)));
+    fn fold<R: Into<f64> + Copy + Sync>(&self, parity: Parity, f: &[R], folded: &mut [f32]) {
+        let signs = [0, 1, 2].map(|c| f64::from(parity.sign(c)));
         each(folded.as_chunks_mut::<3>().0, |a, folded| {
             let [own, opposite] = self.nodes[a].map(|n| 3 * n as usize);
             for c in 0..3 {
                 folded[c] = match own == opposite {
-                    true if parity.is_free_on_mirror(self.axis, c) => f[own + c].into() as f32,
+                    true if parity.is_free_on_mirror(c) => f[own + c].into() as f32,
                     true => 0.0,
                     false => (f[own + c].into() + signs[c] * f[opposite + c].into()) as f32,
                 };
@@ -172,16 +192,15 @@ impl Fold {
         });
     }
 
-    /// Adds the whole body's displacements `E z` of a half's `z` to `u`.
-    pub fn unfold_add<R: Into<f64> + Copy>(&self, parity: Parity, z: &[R], u: &mut [f64]) {
-        let signs = [0, 1, 2].map(|c| f64::from(parity.sign(self.axis, c)));
+    fn unfold_add<R: Into<f64> + Copy>(&self, parity: Parity, z: &[R], u: &mut [f64]) {
+        let signs = [0, 1, 2].map(|c| f64::from(parity.sign(c)));
         for (z, nodes) in z.as_chunks::<3>().0.iter().zip(&self.nodes) {
             let [own, opposite] = nodes.map(|n| 3 * n as usize);
             for c in 0..3 {
                 if own != opposite {
                     u[own + c] += z[c].into();
                     u[opposite + c] += signs[c] * z[c].into();
-                } else if parity.is_free_on_mirror(self.axis, c) {
+                } else if parity.is_free_on_mirror(c) {
                     u[own + c] += z[c].into();
                 }
             }
@@ -215,7 +234,7 @@ mod tests {
         let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
         let mut whole = BlockMatrix::<f32>::zeros(pattern);
         whole.blocks.as_flattened_mut().iter_mut().enumerate().for_each(|(i, a)| *a = scattered(i) as f32);
-        let mut fold = Fold::new(&whole.pattern, &half.node, &mirror, 0).unwrap();
+        let mut fold = Fold::new(&whole.pattern, &half.node, &mirror).unwrap();
         // Twice: nothing is left of the matrix before.
         for _ in 0..2 {
             fold.update(&whole);
@@ -227,7 +246,7 @@ mod tests {
             fold.unfold_add(parity, &z, &mut u);
             for (n, &opposite) in mirror.iter().enumerate() {
                 for c in 0..3 {
-                    assert_eq!(u[3 * n + c], f64::from(parity.sign(0, c)) * u[3 * opposite as usize + c]);
+                    assert_eq!(u[3 * n + c], f64::from(parity.sign(c)) * u[3 * opposite as usize + c]);
                 }
             }
             let mut f = vec![0.0; u.len()];
@@ -246,6 +265,6 @@ mod tests {
         let right = (0..mirror.len()).find(|&n| mesh.nodes[n][0] > 0.0).unwrap();
         coupled[right].push(mirror[right]);
         coupled[right].sort_unstable();
-        assert!(Fold::new(&Pattern::from_rows(coupled.into_iter()), &half.node, &mirror, 0).is_none());
+        assert!(Fold::new(&Pattern::from_rows(coupled.into_iter()), &half.node, &mirror).is_none());
     }
 }

@@ -20,6 +20,8 @@ pub mod multigrid;
 mod parallel;
 #[cfg(test)]
 mod tests;
+pub mod ties;
+pub mod turn;
 mod vector;
 
 pub use bsr::{BlockMatrix, Pattern};

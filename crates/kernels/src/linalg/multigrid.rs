@@ -9,6 +9,7 @@ use super::fixed::Fixed;
 use super::galerkin::{Transfer, mask};
 use super::kernel::{Node, row_times};
 use super::parallel::{each, each_row};
+use super::ties::Ties;
 use super::{LinalgError, size};
 use crate::lanes::array;
 use crate::mesh::Prolongation;
@@ -78,6 +79,17 @@ impl Hierarchy {
         }
         levels.push(GridLevel::new(Smoother::new(fine, COARSEST_DEGREE, COARSEST_LOW), None));
         Ok(Self { levels, fixed: Fixed::default(), fixed_before: Fixed::default(), complete: false })
+    }
+
+    /// The same where nodes of the finest level are tied to each other, as their interpolations
+    /// from tied nodes of the next level are. `prolongations` are those it was made of.
+    pub fn with_ties(mut self, ties: Ties, prolongations: &[Prolongation]) -> Self {
+        let all = std::iter::successors(Some((ties, prolongations)), |(ties, rest)| {
+            let (first, rest) = rest.split_first()?;
+            Some((ties.coarser(first), rest))
+        });
+        self.levels.iter_mut().zip(all).for_each(|(level, (ties, _))| level.smoother.ties = ties);
+        self
     }
 
     /// The same with smoothers that round their blocks to bf16, as those of a device do, which

@@ -101,9 +101,6 @@ pub struct Half {
     pub node: Vec<u32>,
     /// Interpolations of the half, finest first. Nodes at x = 0 take from nodes at x = 0 alone.
     pub hierarchy: Vec<Prolongation>,
-    /// Of a body that is its own mirror image in y as well, what is at x >= 0 and y >= 0, by nodes
-    /// of the whole mesh.
-    pub quarter: Option<Box<Half>>,
 }
 
 /// A hex8 mesh with what the solver needs to know of it.

@@ -89,12 +89,7 @@ pub fn whole(half: &Mesh) -> Mesh {
 /// What of both halves is at x >= 0, from that of one.
 fn of_both(right: &Half, nodes: &[[f64; 3]], image: &Image) -> Half {
     let is_shared = right.node.iter().map(|&n| nodes[n as usize][1] == 0.0).collect();
-    Half {
-        node: image.with_images(&right.node),
-        hierarchy: levels(&right.hierarchy, is_shared),
-        // Nodes of the half keep their numbers.
-        quarter: Some(Box::new(right.clone())),
-    }
+    Half { node: image.with_images(&right.node), hierarchy: levels(&right.hierarchy, is_shared) }
 }
 
 /// The levels of both halves, from those of one and from what of its finest nodes lies at y = 0.

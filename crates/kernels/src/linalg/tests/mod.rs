@@ -4,6 +4,7 @@ mod krylov;
 mod problem;
 mod products;
 mod solve;
+mod turn;
 
 pub(super) use super::{BlockMatrix, Hierarchy, LinalgError, LinearSolver, Pattern, SolverKind};
 pub(super) use crate::mesh::{Mesh, Prolongation};

@@ -118,7 +118,7 @@ fn mesh_with(layout: &Layout, finest: &Layout) -> Mesh {
         contact_area,
         contact_size,
         hierarchy: [skin.prolongations(), hierarchy(blocks)].concat(),
-        half: Some(Half { node: half_nodes, hierarchy: [half_levels, hierarchy(blocks.right_half())].concat(), quarter: None }),
+        half: Some(Half { node: half_nodes, hierarchy: [half_levels, hierarchy(blocks.right_half())].concat() }),
         fine_radius: layout.fine_radius,
         couple: None,
     }
