@@ -164,8 +164,8 @@ impl Place {
         work
     }
 
-    /// What the part of a twist in yield is within a step of which only `along` is known.
-    fn twist(&self, friction: f64, along: f64, ratio: f64) -> Twist {
+    /// What the part of a twist in yield were if all stuck, and by how much slip takes from it.
+    fn try_twist(&self, friction: f64, along: f64, ratio: f64) -> Twist {
         let mut twist =
             Twist { along, ratio, vertex: 0.0, trial: ratio, gives: 0.0, kept: 1.0, flows: 1.0, sectors: Sectors::default() };
         if self.f_n > 0.0 {
@@ -256,7 +256,7 @@ fn advance(
     let change = if e > 0.0 && state.approach > 0.0 { before.f_n * (e / state.approach - 1.0).abs() } else { 0.0 };
     let ratio = before.follow_twist(friction, &sectors, turning.twisted, way, change);
     let kept = before.left_by_roll(rolled);
-    let twist = Twist { vertex: turning.vertex, kept, flows, sectors, ..before.twist(friction, along, ratio) };
+    let twist = Twist { vertex: turning.vertex, kept, flows, sectors, ..before.try_twist(friction, along, ratio) };
     let (next, response, held) = moved_with(table, &from, Some(&twist), h, d);
     let (sector, vertex) = held.unwrap_or((Sectors::default(), turning.vertex));
     let after = Place::of(table, &next, 0.0, rolled);

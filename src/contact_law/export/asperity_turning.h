@@ -39,7 +39,7 @@ typedef struct asperity_moments {
 
 /* Of a contact at one time: its whole radius, F_N, stiffness in a roll, greatest moment, and of its row D, dent and k_T. */
 typedef struct asperity_place {
-    double radius, f_n, stiff, most, approach, dent, along, ratio[2];
+    double radius, f_n, stiff, most, approach, dent, along;
 } asperity_place;
 
 /* Where a contact is that was rolled so far; `e` is the elastic approach to take where it has not yet touched. */
@@ -47,7 +47,7 @@ ASPERITY_FN void asperity_place_of(const asperity_table *t, const asperity_state
     double depth = (double)t->first + (double)s->hardened, log_h = asperity_logarithm(depth / (double)t->first), recovered, gamma, force, wide, a;
     double reach = (double)s->reach > 0.0 ? (double)s->reach : e;
     asperity_row row;
-    int i, j;
+    int i;
     memset(o, 0, sizeof *o);
     asperity_read(t, depth, log_h, &row);
     gamma = row.value[ASPERITY_GAMMA];
@@ -72,11 +72,6 @@ ASPERITY_FN void asperity_place_of(const asperity_table *t, const asperity_state
             double plastic = asperity_logarithm(1.0 - recovered);
             o->most = ASPERITY_ROLL_MOMENT * rolled * asperity_exponential(ASPERITY_ROLL_FADES * plastic) * o->f_n * a;
             o->stiff = ASPERITY_ROLL_STIFF * asperity_exponential(ASPERITY_ROLL_SOFTENS * asperity_logarithm(recovered)) * (2.0 / 3.0) * gamma * o->f_n / e * a * a;
-        }
-        for (j = 0; j < 2; j++) {
-            for (i = 0; i < ASPERITY_SLIDERS; i++) {
-                o->ratio[j] += (double)s->slider[j][i] / o->f_n;
-            }
         }
     }
 }
@@ -148,6 +143,40 @@ ASPERITY_FN double asperity_roll_moment(const asperity_place *at, const double r
     return work;
 }
 
+/* What the part of a twist in yield were if all stuck, and by how much slip takes from it. */
+ASPERITY_FN void asperity_try_twist(const asperity_table *t, const asperity_place *at, asperity_twist *twist) {
+    twist->trial = twist->ratio;
+    twist->gives = 0.0;
+    if (at->f_n > 0.0) {
+        double slope = ASPERITY_TWIST_YIELD / (ASPERITY_TWIST_LEVER * at->f_n) * ASPERITY_TWIST_STIFF * at->along * ASPERITY_LEVERS_SQUARED;
+        double most = 1.1 * ASPERITY_TWIST_YIELD * (double)t->friction;
+        twist->gives = slope * ASPERITY_TWIST_FLOW / ASPERITY_TWIST_LEVER;
+        twist->trial += slope * twist->along;
+        twist->trial = twist->trial < most ? twist->trial > -most ? twist->trial : -most : most;
+    }
+}
+
+/* What a roll by `far` contact radii does before a step that presses by the share `pressed` of h: tractions stay behind. Returns their energy. */
+ASPERITY_FN double asperity_leave_behind(const asperity_place *at, double far, double pressed, double *rolled, asperity_state *state, asperity_twist *twist) {
+    double recovered = at->approach / (at->approach + at->dent), lost = 0.0;
+    double kept = asperity_exponential(-far / ASPERITY_ROLL_TRACTION * asperity_exponential(-ASPERITY_ROLL_LEAVES * asperity_logarithm(recovered)));
+    int i, j;
+    twist->flows = pressed > 0.0 ? pressed / (pressed + far / ASPERITY_ROLL_FLOW) : 0.0;
+    *rolled = 1.0 - (1.0 - *rolled) * asperity_exponential(-far / ASPERITY_ROLL_WAY);
+    for (i = 0; i < ASPERITY_SLIDERS; i++) {
+        for (j = 0; j < 2; j++) {
+            double held = (double)state->slider[j][i];
+            state->slider[j][i] = ASPERITY_R(held * kept);
+            lost += 0.5 * held * held * (1.0 - kept * kept) * asperity_per_weights()[i] / at->along;
+        }
+        for (j = 0; j < ASPERITY_SECTORS; j++) {
+            twist->sector[j][0][i] *= kept;
+            twist->sector[j][1][i] *= kept;
+        }
+    }
+    return lost;
+}
+
 /* Whether a contact has turned. */
 ASPERITY_FN int asperity_has_turned(const asperity_turning *turning) {
     asperity_real sum = ASPERITY_ABS(turning->twisted) + ASPERITY_ABS(turning->vertex) +
@@ -161,17 +190,30 @@ ASPERITY_FN int asperity_has_turned(const asperity_turning *turning) {
     return !(sum == ASPERITY_R(0.0));
 }
 
+/* The sectors to work with; those of a contact that begins to turn are alike. */
+ASPERITY_FN void asperity_begin_turning(const asperity_state *state, const asperity_turning *turning, asperity_twist *twist) {
+    const int has = asperity_has_turned(turning);
+    int i, j;
+    memset(twist->sector, 0, sizeof twist->sector);
+    for (i = 0; i < ASPERITY_SLIDERS; i++) {
+        for (j = 0; j < ASPERITY_SECTORS; j++) {
+            twist->sector[j][0][i] = (double)(has ? turning->sector[j][0][i] : state->slider[0][i]);
+            twist->sector[j][1][i] = (double)(has ? turning->sector[j][1][i] : state->slider[1][i]);
+        }
+    }
+}
+
 /* Moves a contact that twists and rolls: asperity_update() with its turn, its memory of that and its moments besides. `next_turning` may be `turning`. */
 ASPERITY_FN void asperity_update_turning(
     const asperity_table *t, asperity_real radius, asperity_real modulus, const asperity_state *state, const asperity_turning *turning, asperity_real h,
     const asperity_real increment[2], const asperity_real turn[3], asperity_state *next, asperity_turning *next_turning, asperity_response *out, asperity_moments *moments,
     asperity_tangent *tangent) {
-    double torque = (double)modulus * (double)radius * (double)radius * (double)radius, roll[2], moment[2], way, angle, kept, rolled, e, slip, shrinks, pressed, most, recovered, lost;
+    double torque = (double)modulus * (double)radius * (double)radius * (double)radius, roll[2], moment[2], way, angle, kept, rolled, e, slip, shrinks, most, lost;
     asperity_state from = *state;
     asperity_real d[2];
     asperity_place before, after;
     asperity_twist twist;
-    int i, j, has;
+    int i, j;
     memset(moments, 0, sizeof *moments);
     if ((!asperity_has_turned(turning) && turn[0] == ASPERITY_R(0.0) && turn[1] == ASPERITY_R(0.0) && turn[2] == ASPERITY_R(0.0)) || !asperity_is_sound(state)) {
         asperity_turning same = *turning;
@@ -183,15 +225,7 @@ ASPERITY_FN void asperity_update_turning(
     e = (double)state->approach + (double)h / (double)radius - (double)state->h;
     asperity_place_of(t, state, e, rolled, &before);
     twist.vertex = (double)turning->vertex;
-    /* The sectors of a contact that begins to turn are alike. */
-    memset(twist.sector, 0, sizeof twist.sector);
-    has = asperity_has_turned(turning);
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        for (j = 0; j < ASPERITY_SECTORS; j++) {
-            twist.sector[j][0][i] = (double)(has ? turning->sector[j][0][i] : state->slider[0][i]);
-            twist.sector[j][1][i] = (double)(has ? turning->sector[j][1][i] : state->slider[1][i]);
-        }
-    }
+    asperity_begin_turning(state, turning, &twist);
     for (j = 0; j < 2; j++) {
         roll[j] = (double)turn[j];
         moment[j] = (double)turning->moment[j];
@@ -204,39 +238,16 @@ ASPERITY_FN void asperity_update_turning(
     slip = ASPERITY_ROLL_SLIP * (before.approach + before.dent);
     twist.flows = 1.0;
     if (angle > 0.0 && before.radius > 0.0) {
-        double far = angle * (double)t->effective_radius / before.radius;
-        pressed = ((double)h / (double)radius - (double)state->h) / (before.approach + before.dent);
-        twist.flows = pressed > 0.0 ? pressed / (pressed + far / ASPERITY_ROLL_FLOW) : 0.0;
-        rolled = 1.0 - (1.0 - rolled) * asperity_exponential(-far / ASPERITY_ROLL_WAY);
-        recovered = before.approach / (before.approach + before.dent);
-        kept = asperity_exponential(-far / ASPERITY_ROLL_TRACTION * asperity_exponential(-ASPERITY_ROLL_LEAVES * asperity_logarithm(recovered)));
-        for (i = 0; i < ASPERITY_SLIDERS; i++) {
-            for (j = 0; j < 2; j++) {
-                double held = (double)from.slider[j][i];
-                from.slider[j][i] = ASPERITY_R(held * kept);
-                lost += 0.5 * held * held * (1.0 - kept * kept) * asperity_per_weights()[i] / before.along;
-            }
-            for (j = 0; j < ASPERITY_SECTORS; j++) {
-                twist.sector[j][0][i] *= kept;
-                twist.sector[j][1][i] *= kept;
-            }
-        }
+        lost += asperity_leave_behind(
+            &before, angle * (double)t->effective_radius / before.radius, ((double)h / (double)radius - (double)state->h) / (before.approach + before.dent), &rolled, &from,
+            &twist);
         d[0] += ASPERITY_R(slip * roll[1] * (double)radius);
         d[1] -= ASPERITY_R(slip * roll[0] * (double)radius);
     }
     way = sqrt(way * way + twist.along * twist.along + slip * slip * angle * angle);
     twist.ratio = asperity_follow_twist(t, &before, &twist, (double)turning->twisted, way, before.f_n * fabs(e > 0.0 && state->approach > 0 ? e / (double)state->approach - 1.0 : 0.0));
     twist.kept = asperity_left_by_roll(&before, rolled);
-    twist.trial = twist.ratio;
-    twist.gives = 0.0;
-    if (before.f_n > 0.0) {
-        /* Of the twist's part in yield: slopes by the displacement while all stick, and bounds of it. */
-        kept = ASPERITY_TWIST_YIELD / (ASPERITY_TWIST_LEVER * before.f_n) * ASPERITY_TWIST_STIFF * before.along * ASPERITY_LEVERS_SQUARED;
-        most = 1.1 * ASPERITY_TWIST_YIELD * (double)t->friction;
-        twist.gives = kept * ASPERITY_TWIST_FLOW / ASPERITY_TWIST_LEVER;
-        twist.trial += kept * twist.along;
-        twist.trial = twist.trial < most ? twist.trial > -most ? twist.trial : -most : most;
-    }
+    asperity_try_twist(t, &before, &twist);
     asperity_advance(t, radius, modulus, &from, &twist, h, d, next, out, tangent);
     if (!asperity_is_finite(out->f_n)) {
         *next = *state;
