@@ -34,9 +34,11 @@ namespace LAMMPS_NS {
 
 constexpr int NUMBERS = sizeof(asperity_contact) / sizeof(double);
 static_assert(NUMBERS == 36, "a contact has 36 numbers");
+constexpr int TURNING = sizeof(asperity_turning) / sizeof(double);
+static_assert(TURNING == 61, "a contact that twists and rolls has 61 numbers more");
 
 // Version of what the plug-in writes to restart files; raised whenever that changes, or what the numbers of a contact mean.
-constexpr double LAYOUT = 3.0;
+constexpr double LAYOUT = 4.0;
 constexpr char MARK[9] = "ASPERITY";
 
 // A law, and what tells it from others.
@@ -79,23 +81,34 @@ struct Identity {
   }
 };
 
-// Whether a buffer of a restart file is of this layout.
-inline void require_layout(LAMMPS *lmp, const char *buf, const char *who)
+// Whether a word is `yes` or `no`.
+inline bool yes_or_no(LAMMPS *lmp, const std::string &what, const char *word)
+{
+  const bool yes = strcmp(word, "yes") == 0;
+  if (!yes && strcmp(word, "no") != 0) lmp->error->all(FLERR, "{} yes or {} no, not {}", what, what, word);
+  return yes;
+}
+
+// Whether a buffer of a restart file is of this layout, its contacts with their twist and roll or without.
+inline void require_layout(LAMMPS *lmp, const char *buf, const char *who, bool turning)
 {
   double head[3];
   memcpy(head, buf, sizeof head);
-  if (memcmp(buf, MARK, sizeof head[0]) == 0 && head[1] == LAYOUT && head[2] == NUMBERS) return;
+  const bool ours = memcmp(buf, MARK, sizeof head[0]) == 0 && head[1] == LAYOUT;
+  if (ours && head[2] == NUMBERS + (turning ? TURNING : 0)) return;
+  if (ours && head[2] == NUMBERS + (turning ? 0 : TURNING))
+    lmp->error->all(FLERR, "{}: the restart file was written with turning {}. Go on with that", who, turning ? "no" : "yes");
   lmp->error->all(FLERR, "{}: the restart file's contacts are of another version of the plug-in. Go on with that version, "
                          "or start anew", who);
 }
 
 // The head of what goes into a restart file.
-inline void begin_layout(std::vector<double> &buf)
+inline void begin_layout(std::vector<double> &buf, bool turning)
 {
   buf.assign(3, 0.0);
   memcpy(buf.data(), MARK, sizeof(double));
   buf[1] = LAYOUT;
-  buf[2] = NUMBERS;
+  buf[2] = NUMBERS + (turning ? TURNING : 0);
 }
 
 inline void write_buffer(FILE *fp, const std::vector<double> &buf)

@@ -12,7 +12,7 @@ namespace LAMMPS_NS {
 class WallInput {
   static constexpr const char *USAGE =
       "fix ID group wall/asperity SHAPE type T TABLE E [restitution e] [tangential f] [changed] [type ...] [velocity vx vy vz] "
-      "[spin wx wy wz] [load dx dy dz F mass M [damping C]], SHAPE: x y z nx ny nz | "
+      "[turning yes|no] [spin wx wy wz] [load dx dy dz F mass M [damping C]], SHAPE: x y z nx ny nz | "
       "cylinder x y z ax ay az R inside or outside | cone x1 y1 z1 R1 x2 y2 z2 R2 | "
       "stl FILE [scale s] [shift x y z] [at x y z] [merge DEGREES]";
   static constexpr double MERGE = 15.0, FOLLOWS = 30.0;    // degrees
@@ -73,6 +73,9 @@ class WallInput {
       if (strcmp(arg[k], "type") == 0 && left > 3) {
         last = read_law(arg + k);
         k += 4;
+      } else if (strcmp(arg[k], "turning") == 0 && left > 1) {
+        turning = yes_or_no(lmp, "fix wall/asperity: turning", arg[k + 1]);
+        k += 2;
       } else if (const int taken = read_motion(left, arg + k)) {
         k += taken;
       } else if (const int taken = stl ? read_mesh_word(left, arg + k) : 0) {
@@ -140,6 +143,7 @@ class WallInput {
  public:
   std::unique_ptr<Shape> shape;
   double least_cosine = -1.0;    // of the old and the new normal of a contact
+  bool turning = false;          // whether contacts twist and roll
 
   WallInput(LAMMPS *lmp, std::vector<std::shared_ptr<Law>> &laws, Motion &motion) : lmp(lmp), laws(laws), motion(motion) {}
 

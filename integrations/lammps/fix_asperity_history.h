@@ -12,6 +12,7 @@ struct Record {
   tagint partner;
   bool seen;
   asperity_contact contact;
+  std::vector<asperity_turning> turning;    // its twist and roll, or none
 };
 
 class FixAsperityHistory : public Fix {
@@ -19,10 +20,12 @@ class FixAsperityHistory : public Fix {
   std::vector<std::vector<Record>> rows;
   double total[3] = {0.0, 0.0, 0.0};    // work dissipated by plastic flow, slip and damping, this process's share
   double **heat = nullptr;              // the same of each sphere, which takes half of what its contacts dissipate
+  bool turning = false;                 // whether contacts twist and roll
   std::map<std::pair<int, int>, Identity> laws, restarted;    // by types: those of now, those of the restart file
 
   FixAsperityHistory(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
   {
+    turning = narg > 3 && strcmp(arg[3], "turning") == 0;
     restart_peratom = 1;
     restart_global = 1;
     create_attribute = 1;
@@ -57,8 +60,11 @@ class FixAsperityHistory : public Fix {
   {
     size_t most = 0;
     for (int i = 0; i < atom->nlocal; i++) most = std::max(most, rows[i].size());
-    maxexchange = HEAD + (NUMBERS + 1) * static_cast<int>(most);
+    maxexchange = HEAD + (numbers() + 1) * static_cast<int>(most);
   }
+
+  // How many numbers a contact has.
+  int numbers() const { return NUMBERS + (turning ? TURNING : 0); }
 
   // A sphere that was made in this run is known from now on by the ID that it has.
   void know(int i)
@@ -73,14 +79,17 @@ class FixAsperityHistory : public Fix {
     return nullptr;
   }
 
-  void put(int i, tagint partner, const asperity_contact &contact)
+  // `turned` is NULL of contacts that do not twist and roll.
+  void put(int i, tagint partner, const asperity_contact &contact, const asperity_turning *turned)
   {
-    if (Record *record = find(i, partner)) {
-      record->contact = contact;
-      record->seen = true;
-    } else {
-      rows[i].push_back({partner, true, contact});
+    Record *record = find(i, partner);
+    if (!record) {
+      rows[i].push_back({partner, true, contact, {}});
+      record = &rows[i].back();
     }
+    record->contact = contact;
+    record->seen = true;
+    if (turned) record->turning.assign(1, *turned);
   }
 
   void drop(int i, tagint partner)
@@ -141,7 +150,7 @@ class FixAsperityHistory : public Fix {
     return m;
   }
   int unpack_exchange(int i, double *buf) override { return unpack(i, buf); }
-  int size_restart(int i) override { return 1 + HEAD + (NUMBERS + 1) * static_cast<int>(rows[i].size()); }
+  int size_restart(int i) override { return 1 + HEAD + (numbers() + 1) * static_cast<int>(rows[i].size()); }
   int maxsize_restart() override
   {
     int most = 0, all;
@@ -170,7 +179,7 @@ class FixAsperityHistory : public Fix {
     MPI_Allreduce(total, sum, 3, MPI_DOUBLE, MPI_SUM, world);
     if (comm->me != 0) return;
     std::vector<double> buf;
-    begin_layout(buf);
+    begin_layout(buf, turning);
     buf.insert(buf.end(), sum, sum + 3);
     buf.push_back(static_cast<double>(laws.size()));
     for (const auto &[types, law] : laws) {
@@ -183,7 +192,7 @@ class FixAsperityHistory : public Fix {
   }
   void restart(char *buf) override
   {
-    require_layout(lmp, buf, "pair_style asperity");
+    require_layout(lmp, buf, "pair_style asperity", turning);
     double head[7];
     memcpy(head, buf, sizeof head);
     if (comm->me == 0) std::copy(head + 3, head + 6, total);
@@ -209,6 +218,11 @@ class FixAsperityHistory : public Fix {
       buf[m++] = ubuf(record.partner).d;
       memcpy(buf + m, &record.contact, sizeof record.contact);
       m += NUMBERS;
+      if (!turning) continue;
+      asperity_turning turned = {};
+      if (!record.turning.empty()) turned = record.turning[0];
+      memcpy(buf + m, &turned, sizeof turned);
+      m += TURNING;
     }
     return m;
   }
@@ -225,6 +239,11 @@ class FixAsperityHistory : public Fix {
       record.seen = true;
       memcpy(&record.contact, buf + m, sizeof record.contact);
       m += NUMBERS;
+      if (turning) {
+        record.turning.resize(1);
+        memcpy(record.turning.data(), buf + m, sizeof(asperity_turning));
+        m += TURNING;
+      }
       rows[i].push_back(record);
     }
     return m;
@@ -253,7 +272,10 @@ class FixAsperityHistory : public Fix {
         }
         // The memory is of the two in the order of their IDs.
         const bool was_first = known_as[i] < record.partner, is_first = atom->tag[i] < at->second;
-        if (was_first != is_first) asperity_exchange(&record.contact);
+        if (was_first != is_first) {
+          asperity_exchange(&record.contact);
+          for (asperity_turning &turned : record.turning) asperity_exchange_turning(&turned);
+        }
         record.partner = at->second;
         k++;
       }

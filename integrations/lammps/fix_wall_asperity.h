@@ -18,6 +18,7 @@ class FixWallAsperity : public Fix {
     double normal[3];    // in the frame of the wall: by it the memory finds its contact again
     double stored;       // elastic energy
     asperity_contact contact;
+    asperity_turning turning;    // its twist and roll; zero where they are left out
   };
   static constexpr int RECORD = sizeof(Record) / sizeof(double);
   std::vector<std::shared_ptr<Law>> laws;
@@ -33,7 +34,7 @@ class FixWallAsperity : public Fix {
   double least_cosine = -1.0;    // of the old and the new normal of a contact
   int extensive[LENGTH];
   double **peratom = nullptr;    // from HEAT on: work dissipated in a sphere by plastic flow, slip and damping at this wall
-  bool known = false;
+  bool known = false, turning = false;    // turning: whether contacts twist and roll
   // Of the sphere in hand: where it touches, which of its records that has, and its new ones.
   std::vector<Touch> found;
   std::vector<int> owner;
@@ -49,6 +50,7 @@ class FixWallAsperity : public Fix {
       shape = std::move(input.shape);
       mesh = dynamic_cast<Mesh *>(shape.get());
       least_cosine = input.least_cosine;
+      turning = input.turning;
       std::copy(motion.place, motion.place + 3, home);
     } catch (const std::runtime_error &problem) {
       error->all(FLERR, "fix wall/asperity {}: {}", id, problem.what());
@@ -331,7 +333,9 @@ class FixWallAsperity : public Fix {
     }
     asperity_cross(motion.spin, lever, turning);
     for (int k = 0; k < 3; k++) wall.velocity[k] = motion.velocity[k] + turning[k];
-    asperity_sphere_wall(&laws[type]->law, &body, &wall, dt, &record.contact, &after, &out);
+    asperity_turning turned = record.turning;
+    asperity_turning *memory = this->turning ? &turned : nullptr;
+    asperity_sphere_wall_turning(&laws[type]->law, &body, &wall, dt, &record.contact, &after, memory, memory, &out);
     if (out.flags & ASPERITY_NO_NUMBER)
       error->one(FLERR, "fix wall/asperity {}: there is no force on sphere {}: its place, its velocity or the memory of the "
                         "contact is no number", id, atom->tag[i]);
@@ -347,6 +351,7 @@ class FixWallAsperity : public Fix {
     if (evflag) tally(i, touch, out.force_i);
     add_up(i, record, after, out, advance);
     record.contact = after;
+    record.turning = turned;
     record.stored = out.stored;
   }
 
@@ -481,7 +486,7 @@ class FixWallAsperity : public Fix {
     MPI_Allreduce(mine, total, 4, MPI_DOUBLE, MPI_SUM, world);
     if (comm->me != 0) return;
     std::vector<double> buf;
-    begin_layout(buf);
+    begin_layout(buf, turning);
     buf.insert(buf.end(), motion.place, motion.place + 3);
     buf.insert(buf.end(), total, total + 4);
     buf.insert(buf.end(), motion.turn, motion.turn + 4);
@@ -501,7 +506,7 @@ class FixWallAsperity : public Fix {
   {
     constexpr int LAWS = 18;
     const std::string who = std::string("fix wall/asperity ") + id;
-    require_layout(lmp, buf, who.c_str());
+    require_layout(lmp, buf, who.c_str(), turning);
     std::vector<double> file(LAWS + 2 * atom->ntypes);
     memcpy(file.data(), buf, file.size() * sizeof(double));
     bool changed = false;

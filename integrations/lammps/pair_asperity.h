@@ -12,6 +12,7 @@ class PairAsperity : public Pair {
   std::vector<std::vector<std::shared_ptr<Law>>> laws;
   FixAsperityHistory *history = nullptr;
   Masses masses;
+  bool turning = false;           // whether contacts twist and roll
   double largest = 0.0;           // greatest radius that the user promises
   std::vector<double> radii;      // greatest radius of each type that the cutoffs are made for
 
@@ -28,13 +29,15 @@ class PairAsperity : public Pair {
 
   // The forces of i and j from a memory; particles in the order of their IDs, so that no exchange ever turns the memory round.
   // Whether i is the first of the two.
-  bool forces(int i, int j, double dt, const asperity_contact &before, asperity_contact &after, asperity_forces &out)
+  bool forces(int i, int j, double dt, const asperity_contact &before, asperity_contact &after, asperity_turning &turned,
+              asperity_forces &out)
   {
     asperity_body a, b;
     const bool first = atom->tag[i] < atom->tag[j];
     fill(a, atom, masses, first ? i : j);
     fill(b, atom, masses, first ? j : i);
-    asperity_spheres(&laws[atom->type[i]][atom->type[j]]->law, &a, &b, dt, &before, &after, &out);
+    asperity_turning *memory = turning ? &turned : nullptr;
+    asperity_spheres_turning(&laws[atom->type[i]][atom->type[j]]->law, &a, &b, dt, &before, &after, memory, memory, &out);
     if (out.flags & ASPERITY_NO_NUMBER)
       error->one(FLERR, "pair_style asperity: there is no force between spheres {} and {}: their centres coincide, or a place, "
                         "a velocity or the memory of the contact is no number", atom->tag[i], atom->tag[j]);
@@ -57,9 +60,11 @@ class PairAsperity : public Pair {
     const tagint *tag = atom->tag;
     const int nlocal = atom->nlocal;
     asperity_contact after, before = {};
+    asperity_turning turned = {};
     asperity_forces out;
     if (record) before = record->contact;
-    const bool first = forces(i, j, dt, before, after, out);
+    if (record && turning && !record->turning.empty()) turned = record->turning[0];
+    const bool first = forces(i, j, dt, before, after, turned, out);
     const double *fi = first ? out.force_i : out.force_j, *ti = first ? out.torque_i : out.torque_j;
     const double *tj = first ? out.torque_j : out.torque_i;
     for (int k = 0; k < 3; k++) {
@@ -78,8 +83,8 @@ class PairAsperity : public Pair {
         history->drop(i, tag[j]);
         if (j < nlocal) history->drop(j, tag[i]);
       } else {
-        history->put(i, tag[j], after);
-        if (j < nlocal) history->put(j, tag[i], after);
+        history->put(i, tag[j], after, turning ? &turned : nullptr);
+        if (j < nlocal) history->put(j, tag[i], after, turning ? &turned : nullptr);
       }
     } else if (record && j < nlocal) {
       if (Record *other = history->find(j, tag[i])) other->seen = true;
@@ -117,16 +122,24 @@ class PairAsperity : public Pair {
 
   void settings(int narg, char **arg) override
   {
-    if (narg == 2 && strcmp(arg[0], "largest") == 0) {
-      largest = utils::numeric(FLERR, arg[1], false, lmp);
-      if (!(largest > 0.0)) error->all(FLERR, "pair_style asperity: the largest radius {} is not positive", arg[1]);
-    } else if (narg != 0) {
-      error->all(FLERR, "pair_style asperity [largest R]; {}", COEFF);
+    bool turns = false;
+    for (int k = 0; k < narg; k += 2) {
+      if (k + 1 < narg && strcmp(arg[k], "largest") == 0) {
+        largest = utils::numeric(FLERR, arg[k + 1], false, lmp);
+        if (!(largest > 0.0)) error->all(FLERR, "pair_style asperity: the largest radius {} is not positive", arg[k + 1]);
+      } else if (k + 1 < narg && strcmp(arg[k], "turning") == 0) {
+        turns = yes_or_no(lmp, "pair_style asperity turning", arg[k + 1]);
+      } else {
+        error->all(FLERR, "pair_style asperity [largest R] [turning yes|no]; {}", COEFF);
+      }
     }
+    if (history && turns != turning)
+      error->all(FLERR, "pair_style asperity: turning stays as it was said first: contacts have their memory by it");
+    turning = turns;
     require_spheres(lmp, "pair_style asperity");
     if (!history) {
       // Made at once, so that what a restart file has of it is taken up.
-      modify->add_fix(std::string(HISTORY) + " all asperity/history");
+      modify->add_fix(std::string(HISTORY) + " all asperity/history" + (turning ? " turning" : ""));
       history = dynamic_cast<FixAsperityHistory *>(modify->get_fix_by_id(HISTORY));
     }
   }
@@ -175,6 +188,9 @@ class PairAsperity : public Pair {
   void init_style() override
   {
     require_spheres(lmp, "pair_style asperity");
+    // LAMMPS' own models of twisting and rolling would count what the law has a second time.
+    if (turning && force->pair_match("^gran", 0))
+      error->all(FLERR, "pair_style asperity turning yes: beside a granular pair style twist and roll would count twice");
     if (!comm->ghost_velocity) error->all(FLERR, "pair_style asperity needs: comm_modify vel yes");
     // Both owners of a pair across a boundary compute it, from their own copies of the memory, whatever `newton` is.
     neighbor->add_request(this, NeighConst::REQ_SIZE | NeighConst::REQ_NEWTON_OFF);
@@ -257,9 +273,11 @@ class PairAsperity : public Pair {
     Record *record = i < atom->nlocal ? history->find(i, atom->tag[j]) : history->find(j, atom->tag[i]);
     if (!record && rsq >= sum * sum) return 0.0;
     asperity_contact after, before = {};
+    asperity_turning turned = {};
     asperity_forces out;
     if (record) before = record->contact;
-    const bool first = forces(i, j, 0.0, before, after, out);
+    if (record && turning && !record->turning.empty()) turned = record->turning[0];
+    const bool first = forces(i, j, 0.0, before, after, turned, out);
     svector[0] = out.f_n;
     svector[1] = out.f_t;
     svector[2] = out.overlap;

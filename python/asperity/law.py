@@ -204,7 +204,7 @@ class Law:
 
     def predict(self, case: Case | Mapping[str, Any] | str | os.PathLike[str], press: bool = False) -> Table:
         """``segment``, ``h``, ``delta_T``, ``F_N``, ``F_T`` along the whole path of a case, in its units, without simulating any of it: what ``asperity law predict`` prints. Where the path leaves the x axis,
-        ``delta_T_y`` and ``F_T_y`` too; a path that twists or rolls is refused.
+        ``delta_T_y`` and ``F_T_y`` too; where it twists or rolls, ``twist``, ``roll_x``, ``roll_y`` and ``M_twist``, ``M_roll_x``, ``M_roll_y``.
 
         Warns where the case lies outside of what the law was fitted to.
 

@@ -173,6 +173,14 @@ impl NativeLaw {
             columns.set_item("delta_T_y", column(|point| point.delta_t_y))?;
             columns.set_item("F_T_y", column(|point| point.f_t_y))?;
         }
+        if case.turns() {
+            for (k, about) in ["twist", "roll_x", "roll_y"].into_iter().enumerate() {
+                columns.set_item(about, points.iter().map(|point| point.turned[k]).collect::<Vec<_>>())?;
+            }
+            for (k, moment) in ["M_twist", "M_roll_x", "M_roll_y"].into_iter().enumerate() {
+                columns.set_item(moment, points.iter().map(|point| point.moments[k]).collect::<Vec<_>>())?;
+            }
+        }
         Ok((columns, outside.iter().map(ToString::to_string).collect()))
     }
 

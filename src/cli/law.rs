@@ -244,21 +244,28 @@ fn predict_case(args: &PredictArgs) -> Result<Exit, CliError> {
     warn_out_of_range(Path::new(&name), &out_of_range);
     let leaves_x = case.path.iter().any(Segment::leaves_x);
     if args.json {
-        print_json(&as_json(&points, leaves_x, &out_of_range))?;
+        print_json(&as_json(&points, [leaves_x, case.turns()], &out_of_range))?;
         return Ok(Exit::Done);
     }
     let mut text = String::from("segment,h,delta_T,F_N,F_T");
-    text.push_str(if leaves_x { ",delta_T_y,F_T_y\n" } else { "\n" });
+    text.push_str(if leaves_x { ",delta_T_y,F_T_y" } else { "" });
+    text.push_str(if case.turns() { ",twist,roll_x,roll_y,M_twist,M_roll_x,M_roll_y\n" } else { "\n" });
     for point in &points {
-        let numbers = [point.h, point.delta_t, point.f_n, point.f_t, point.delta_t_y, point.f_t_y].map(decimal);
-        let told = if leaves_x { numbers.as_slice() } else { &numbers[..4] };
+        let mut told = vec![point.h, point.delta_t, point.f_n, point.f_t];
+        if leaves_x {
+            told.extend([point.delta_t_y, point.f_t_y]);
+        }
+        if case.turns() {
+            told.extend([point.turned, point.moments].concat());
+        }
+        let told: Vec<String> = told.into_iter().map(decimal).collect();
         let _ = writeln!(text, "{},{}", point.segment, told.join(","));
     }
     print(&text)?;
     Ok(Exit::Done)
 }
 
-fn as_json(points: &[PathPoint], leaves_x: bool, out_of_range: &[OutOfRange]) -> Value {
+fn as_json(points: &[PathPoint], [leaves_x, turns]: [bool; 2], out_of_range: &[OutOfRange]) -> Value {
     let column = |of: fn(&PathPoint) -> f64| points.iter().map(of).collect::<Vec<f64>>();
     let outside = out_of_range.iter().map(
         |OutOfRange { quantity, value, range }| json!({ "quantity": quantity, "value": value, "from": range.from, "to": range.to }),
@@ -273,6 +280,12 @@ fn as_json(points: &[PathPoint], leaves_x: bool, out_of_range: &[OutOfRange]) ->
     if leaves_x {
         curve["delta_T_y"] = json!(column(|p| p.delta_t_y));
         curve["F_T_y"] = json!(column(|p| p.f_t_y));
+    }
+    if turns {
+        for (k, about) in ["twist", "roll_x", "roll_y"].into_iter().enumerate() {
+            curve[about] = json!(points.iter().map(|p| p.turned[k]).collect::<Vec<_>>());
+            curve[format!("M_{about}")] = json!(points.iter().map(|p| p.moments[k]).collect::<Vec<_>>());
+        }
     }
     json!({ "curve": curve, "out_of_range": outside.collect::<Vec<_>>() })
 }

@@ -37,8 +37,8 @@ pub struct CheckArgs {
     pub random: Option<u32>,
     /// Check paths on which the direction of shear changes, instead of the set: circles with radii
     /// of 0.5 and 0.9 of the displacement at full slip, a figure of eight and a corner of 90
-    /// degrees. Four paths on which the sphere twists or rolls are simulated too, but not counted,
-    /// as laws have no moments. All of them take the mesh of the whole sphere.
+    /// degrees. Four paths on which the sphere twists or rolls are simulated too, and their moments
+    /// judged, but they are not counted. All of them take the mesh of the whole sphere.
     #[arg(long, conflicts_with = "random")]
     pub turning: bool,
     /// Seed of the random paths.

@@ -23,6 +23,9 @@
 //!   and a sudden one under new shear, such that the shear at constant h comes out nearly as it was
 //!   given.
 //!
+//! [`ContactParameters::update_turning`] twists and rolls the contact besides; what that adds is in
+//! `turning`.
+//!
 //! A step solves F_N G = rho P and F_T = r F_N for the hardening and r by Newton's method with
 //! exact slopes; where that does not find the root it is bracketed in the hardening.
 //! `benches/law/element.md` has all equations, what fails, and by which term.
@@ -34,10 +37,13 @@ mod centres;
 mod constants;
 mod parameters;
 mod prepare;
+mod sectors;
 mod sliders;
 mod state;
 mod step;
 mod table;
+mod turning;
+mod turning_constants;
 mod update;
 mod virgin;
 
@@ -45,8 +51,11 @@ pub use centres::{Centres, Frame};
 pub use constants::Constants;
 pub use parameters::ContactParameters;
 pub(crate) use prepare::KEPT;
+pub use sectors::SECTORS;
 pub use state::{ContactResponse, ContactState};
 pub use table::SLIDERS;
+pub use turning::{Moments, Turn, TurningState};
+pub use turning_constants::TurningConstants;
 pub use virgin::{ContactError, FirstLoading, Given, POINTS, Shapes, Virgin, VirginPoint, measured_slope, unloading_exponent};
 
 #[cfg(test)]

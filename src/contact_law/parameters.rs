@@ -4,6 +4,7 @@ use super::constants::Constants;
 use super::prepare::prepare;
 use super::state::{ContactResponse, ContactState};
 use super::table::{LN_FORCE, LN_RADIUS, LN_STIFFNESS, Table};
+use super::turning::{Moments, Turn, TurningState, update_turning};
 use super::update::{stored_energy, update};
 use super::virgin::{FirstLoading, Virgin};
 
@@ -91,6 +92,19 @@ impl ContactParameters {
     /// number and the state stays as it was.
     pub fn update(&self, state: &ContactState, h: f64, increment: [f64; 2]) -> (ContactState, ContactResponse) {
         update(&self.table, state, h, increment)
+    }
+
+    /// The same of a contact that twists and rolls by `turn` in the increment; the displacement is
+    /// what the sphere slips without the roll. Of one that never turned the forces are those of
+    /// [`update`](Self::update), to the last bit.
+    pub fn update_turning(
+        &self,
+        (state, turning): (&ContactState, &TurningState),
+        h: f64,
+        increment: [f64; 2],
+        turn: Turn,
+    ) -> (ContactState, TurningState, ContactResponse, Moments) {
+        update_turning(&self.table, self.first_loading.radius, (state, turning), h, increment, turn)
     }
 
     /// Elastic energy that the contact stores, force times length: no path gives back more than it.

@@ -3,6 +3,7 @@
 use super::ContactParameters;
 use super::centres::Centres;
 use super::state::{ContactResponse, ContactState};
+use super::turning::{Moments, Turn, TurningState};
 use crate::case::{Hold, Motion, Segment, ShearTarget, unit};
 
 /// A place on a path, in the units of the parameters.
@@ -22,6 +23,10 @@ pub struct PathPoint {
     pub f_t: f64,
     /// The same along y.
     pub f_t_y: f64,
+    /// How far it has turned about z (its twist), about x and about y (its roll), rad.
+    pub turned: [f64; 3],
+    /// The moments about these, in the direction of the turn.
+    pub moments: [f64; 3],
     /// Whether the contact slips as a whole: F_T has come to mu F_N in its own frame.
     pub slips: bool,
 }
@@ -81,11 +86,41 @@ pub fn drive_in_the_plane(
     (forces, follower.work - parameters.stored_energy(&follower.state))
 }
 
+/// F_N, F_T along x and y, and the moments about z, x and y at places (h, delta_T along x and y, and
+/// how far the sphere has turned about z, x and y), and the work that the update takes on the way
+/// through them and has not stored at the end.
+pub fn drive_turning(
+    parameters: &ContactParameters,
+    centres: Centres,
+    places: &[[f64; 6]],
+    increments: usize,
+) -> (Vec<[f64; 6]>, f64) {
+    let mut follower = Follower::new(parameters, centres);
+    let mut at = |place: &[f64; 6]| {
+        let [h, x, y, twist, roll_x, roll_y] = *place;
+        follower.turn_to([h, x, y], [twist, roll_x, roll_y], Hold::Indentation, increments, 1.0);
+        let ([f_n, f_t, f_t_y], [m_z, m_x, m_y]) = (follower.force, follower.moments());
+        [f_n, f_t, f_t_y, m_z, m_x, m_y]
+    };
+    let forces = places.iter().map(&mut at).collect();
+    let stored = parameters.stored_energy(&follower.state) + follower.moment.stored;
+    (forces, follower.work - stored)
+}
+
+/// What a contact remembers, answers and has for forces along the fixed axes.
+type Answer = (ContactState, TurningState, ContactResponse, Moments, [f64; 3]);
+
 struct Follower<'a> {
     parameters: &'a ContactParameters,
     centres: Centres,
     state: ContactState,
     out: ContactResponse,
+    /// The same of twist and roll, how far it has turned about z, x and y, and to where the next
+    /// increment turns it.
+    turning: TurningState,
+    moment: Moments,
+    turned: [f64; 3],
+    turns_to: [f64; 3],
     /// The place along the fixed axes, delta_T along y too, and F_N and F_T there.
     h: f64,
     delta_t: f64,
@@ -106,6 +141,10 @@ impl<'a> Follower<'a> {
             centres,
             state: ContactState::default(),
             out: ContactResponse::default(),
+            turning: TurningState::default(),
+            moment: Moments::default(),
+            turned: [0.0; 3],
+            turns_to: [0.0; 3],
             h: 0.0,
             delta_t: 0.0,
             across: 0.0,
@@ -120,7 +159,14 @@ impl<'a> Follower<'a> {
     fn tell(&mut self) {
         let [f_n, f_t, f_t_y] = self.force;
         let Self { number: segment, h, delta_t, across: delta_t_y, .. } = *self;
-        self.points.push(PathPoint { segment, h, delta_t, delta_t_y, f_n, f_t, f_t_y, slips: self.slips() });
+        let (turned, moments, slips) = (self.turned, self.moments(), self.slips());
+        self.points.push(PathPoint { segment, h, delta_t, delta_t_y, f_n, f_t, f_t_y, turned, moments, slips });
+    }
+
+    /// The moments about z, x and y.
+    fn moments(&self) -> [f64; 3] {
+        let [x, y] = self.moment.m_roll;
+        [self.moment.m_twist, x, y]
     }
 
     /// Whether F_T has come to mu F_N.
@@ -132,15 +178,22 @@ impl<'a> Follower<'a> {
     }
 
     /// The answer at a place, and its F_N and F_T along the fixed axes.
-    fn ask_at(&self, place: [f64; 3]) -> (ContactState, ContactResponse, [f64; 3]) {
+    fn ask_at(&self, place: [f64; 3]) -> Answer {
         let slid = self.centres.slid([self.h, self.delta_t, self.across], place);
-        let (state, out) = self.parameters.update(&self.state, self.centres.overlap_at(place), slid);
-        (state, out, self.centres.along_fixed_axes(place, [out.f_n, out.f_t[0], out.f_t[1]]))
+        let [twist, x, y] = [0, 1, 2].map(|k| self.turns_to[k] - self.turned[k]);
+        let (before, turn) = ((&self.state, &self.turning), Turn { twist, roll: [x, y] });
+        let (state, turning, out, moment) = self.parameters.update_turning(before, self.centres.overlap_at(place), slid, turn);
+        (state, turning, out, moment, self.centres.along_fixed_axes(place, [out.f_n, out.f_t[0], out.f_t[1]]))
     }
 
     fn step_to(&mut self, place: [f64; 3]) {
-        let before = self.force;
-        (self.state, self.out, self.force) = self.ask_at(place);
+        let (before, moments) = (self.force, self.moments());
+        (self.state, self.turning, self.out, self.moment, self.force) = self.ask_at(place);
+        let after = self.moments();
+        for k in 0..3 {
+            self.work += 0.5 * (moments[k] + after[k]) * (self.turns_to[k] - self.turned[k]);
+        }
+        self.turned = self.turns_to;
         let [h, delta_t, across] = place;
         self.work += 0.5 * ((before[0] + self.force[0]) * (h - self.h) + (before[1] + self.force[1]) * (delta_t - self.delta_t));
         self.work += 0.5 * (before[2] + self.force[2]) * (across - self.across);
@@ -160,6 +213,35 @@ impl<'a> Follower<'a> {
             self.step_to(place);
             self.tell();
         }
+    }
+
+    /// Goes to a place and turns about z, x and y on the way, in proportion.
+    fn turn_to(&mut self, end: [f64; 3], turned: [f64; 3], hold: Hold, steps: usize, growth: f64) {
+        let (start, from, f_n) = ([self.h, self.delta_t, self.across], self.turned, self.force[0]);
+        for i in 1..=steps {
+            let share = (i as f64 / steps as f64).powf(growth);
+            let between = |from: [f64; 3], to: [f64; 3]| {
+                if i == steps { to } else { [0, 1, 2].map(|k| from[k] + share * (to[k] - from[k])) }
+            };
+            self.turns_to = between(from, turned);
+            let [mut h, x, y] = between(start, end);
+            if hold == Hold::NormalForce {
+                h = self.holding(f_n, [x, y]);
+            }
+            self.step_to([h, x, y]);
+            self.tell();
+        }
+    }
+
+    /// A segment that twists or rolls.
+    fn turning_segment(&mut self, to: &Motion, hold: Hold) {
+        let [x, y] = to.shear.unwrap_or([self.delta_t, self.across]);
+        let [about_x, about_y] = to.roll.unwrap_or([self.turned[1], self.turned[2]]);
+        let turned = [to.twist.unwrap_or(self.turned[0]), about_x, about_y];
+        if to.shear.is_some() {
+            self.turn([x, y]);
+        }
+        self.turn_to([to.indentation.unwrap_or(self.h), x, y], turned, hold, 2 * STEPS, 1.5);
     }
 
     fn segment(&mut self, number: usize, segment: &Segment) {
@@ -183,13 +265,13 @@ impl<'a> Follower<'a> {
                 self.way = unit(direction);
                 self.shear(None, hold);
             }
+            Segment::Motion { ref to, hold } if to.turns() => self.turning_segment(to, hold),
             Segment::Motion { to: Motion { indentation: None, shear: Some(end), .. }, hold } => self.shear_to(end, hold),
             Segment::Motion { to: Motion { indentation: Some(h), shear: Some(end), .. }, .. } => {
                 self.turn(end);
                 self.straight_to([h, end[0], end[1]], 2 * STEPS, 1.5);
             }
             Segment::Motion { to: Motion { indentation, .. }, .. } => {
-                // What turns is refused by `law::LawFile::follow`.
                 if let Some(h) = indentation {
                     self.towards(h, at, STEPS, 1.5);
                 }
@@ -277,7 +359,7 @@ impl<'a> Follower<'a> {
         if !(wanted > 0.0) {
             return self.h;
         }
-        let falls = |h: f64| self.ask_at([h, delta_t[0], delta_t[1]]).2[0] < wanted;
+        let falls = |h: f64| self.ask_at([h, delta_t[0], delta_t[1]]).4[0] < wanted;
         let h = self.h;
         let mut reach = 1e-3 * self.parameters.virgin(self.state.h_max).depth;
         if falls(h) {

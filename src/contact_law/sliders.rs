@@ -8,12 +8,12 @@ pub(super) type Forces = [[f64; SLIDERS]; 3];
 
 /// Shares of mu F_N that the sliders may hold, before they are divided by their sum.
 pub(super) struct Limits {
-    limit: [f64; SLIDERS],
-    opening: [f64; SLIDERS],
-    sum: f64,
-    open: f64,
+    pub(super) limit: [f64; SLIDERS],
+    pub(super) opening: [f64; SLIDERS],
+    pub(super) sum: f64,
+    pub(super) open: f64,
     /// Slopes by how far it was sheared of each slider's share of what all hold.
-    by_worn: [f64; SLIDERS],
+    pub(super) by_worn: [f64; SLIDERS],
 }
 
 impl Limits {
@@ -57,6 +57,8 @@ pub(super) struct Held {
     pub(super) by_eta: [f64; 2],
     /// By how far it was sheared.
     pub(super) by_worn: [f64; 2],
+    /// By the turn of a twist.
+    pub(super) by_turn: [f64; 2],
 }
 
 /// Moves the sliders from the forces `from` by `along` (two axes, radial) at the stiffness `stiff`,

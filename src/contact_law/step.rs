@@ -3,9 +3,11 @@
 //! Unknown are the hardening y and the residual r = F_T/F_N, two components; F_N G = rho P and F_T
 //! = r F_N are to be met. [`Step::evaluate`] tells by how much they are not, with slopes.
 
+use super::sectors::{Sectors, Twist, slide_sectors};
 use super::sliders::{Held, Limits, slide};
 use super::state::ContactState;
 use super::table::{FLOW, GAMMA, LN_FORCE, LN_STIFFNESS, MOBILISED, Row, SLIDERS, SOLVED, Table};
+use super::turning_constants::{TWIST_LEVER, TurningConstants};
 
 /// Unknowns and given ones, in the order of slopes: y, r (two), h, delta_T (two).
 pub(super) const SLOPES: usize = 6;
@@ -14,6 +16,8 @@ pub(super) const SLOPES: usize = 6;
 pub(super) struct Step<'a> {
     pub(super) table: &'a Table,
     pub(super) state: &'a ContactState,
+    /// What it twists and rolls, if it does.
+    pub(super) twist: Option<&'a Twist>,
     /// The row of its start.
     pub(super) row: Row,
     /// Elastic approach, were nothing to yield.
@@ -58,6 +62,8 @@ pub(super) struct Guess {
     pub(super) hardens: f64,
     pub(super) approach: f64,
     pub(super) vertex: [f64; 2],
+    /// The vertex of the twist.
+    pub(super) twist_vertex: f64,
     pub(super) forces: super::sliders::Forces,
     pub(super) reach: f64,
     pub(super) slip: [f64; 2],
@@ -90,6 +96,12 @@ pub(super) struct Terms {
     rho_y: f64,
     rho_h: f64,
     held: Held,
+    /// Of the twist: what is between its ratio and its vertex, the ratio after the flow, and 1 over
+    /// the share that flow leaves.
+    untwisted: f64,
+    turned: f64,
+    per_turn: f64,
+    pub(super) sectors: Option<Box<Sectors>>,
 }
 
 /// Plastic slip along r and along v, and slopes.
@@ -125,8 +137,10 @@ impl Step<'_> {
         let q = hardening * stiff / (force * constants.vertex_length * table.friction);
         let c = 1.0 / (1.0 + q);
         let x: [f64; 2] = std::array::from_fn(|i| (r[i] - self.state.vertex[i]) * c);
-        let ratio = (r[0] * r[0] + r[1] * r[1]).sqrt();
-        let far = (x[0] * x[0] + x[1] * x[1]).sqrt();
+        let twisted = self.twisted();
+        let untwisted = self.twist.map_or(0.0, |twist| (twisted - twist.vertex) * c);
+        let ratio = (r[0] * r[0] + r[1] * r[1] + twisted * twisted).sqrt();
+        let far = (x[0] * x[0] + x[1] * x[1] + untwisted * untwisted).sqrt();
         let eps = constants.vertex_round * table.friction;
         let round = (far * far + eps * eps).sqrt();
         let (factor, factor_by) = if flows { table.factor(&row, ratio, far) } else { (1.0, [0.0; 3]) };
@@ -134,6 +148,7 @@ impl Step<'_> {
             hardens: hardening,
             factor,
             vertex: [r[0] - x[0], r[1] - x[1]],
+            twist_vertex: twisted - untwisted,
             reach: self.state.reach,
             approach: self.approach - hardening,
             width: 1.0 + self.state.stiffened,
@@ -170,10 +185,52 @@ impl Step<'_> {
         let before = Limits::new(eta_before, &self.lost_before);
         let limits = Limits::new(eta, &self.lost).worn(&before, LESS);
         let most = table.friction * o.f_n;
-        let held = slide(&self.state.slider, along, stiff, most, &limits, constants.radial_most);
+        let [turn, turned, per_turn] = self.twist.map_or([0.0; 3], |twist| twist.beside(flow.steady, flow.sudden * c / round));
+        let (held, sectors) = match self.twist {
+            None => (slide(&self.state.slider, along, stiff, most, &limits, constants.radial_most), None),
+            Some(twist) => {
+                let [_, _, radial] = &self.state.slider;
+                let (held, sectors) =
+                    slide_sectors(&twist.sectors, radial, (along, turn), stiff, most, &limits, constants.radial_most);
+                (held, Some(sectors))
+            }
+        };
         (o.forces, o.f_t) = (held.forces, held.f_t);
         let (rho_y, rho_h) = if flows { self.residuals(o, force, rate, r) } else { (0.0, 0.0) };
-        Some(Terms { row, r, rate, x, far, round, ratio, q, c, factor_by, width_by, level, flow, v, eta_by, rho_y, rho_h, held })
+        Some(Terms {
+            row,
+            r,
+            rate,
+            x,
+            far,
+            round,
+            ratio,
+            q,
+            c,
+            factor_by,
+            width_by,
+            level,
+            flow,
+            v,
+            eta_by,
+            rho_y,
+            rho_h,
+            held,
+            untwisted,
+            turned,
+            per_turn,
+            sectors,
+        })
+    }
+
+    /// The part of a twist in yield.
+    pub(super) fn twisted(&self) -> f64 {
+        self.twist.map_or(0.0, |twist| twist.ratio)
+    }
+
+    /// What a roll leaves of the yield force.
+    pub(super) fn kept(&self) -> f64 {
+        self.twist.map_or(1.0, |twist| twist.kept)
     }
 
     /// Slopes of the residuals by y and r, for Newton's method: where the yield factor begins to
@@ -207,10 +264,11 @@ impl Step<'_> {
         let per = 1.0 / (ratio + 1e-9);
         let (gap, gap_slope) = (row.approach, row.approach_slope);
         let grown = (factor - self.growing).max(0.0);
+        let flows = self.twist.map_or(1.0, |twist| twist.flows);
         Flow {
-            steady: hardening * steady * per,
-            steady_y: (rate * steady + hardening * steady_by[1] * row.share_slope) * per,
-            steady_r: hardening * (steady_by[0] / table.friction - steady * per) * per,
+            steady: hardening * steady * per * flows,
+            steady_y: (rate * steady + hardening * steady_by[1] * row.share_slope) * per * flows,
+            steady_r: hardening * (steady_by[0] / table.friction - steady * per) * per * flows,
             sudden: hardening * self.sudden + grown * gap * mobile,
             sudden_y: rate * self.sudden + grown * (gap_slope * mobile + gap * mobile_by[1] * row.share_slope),
             mobile,
@@ -233,7 +291,7 @@ impl Step<'_> {
             rho_y = rho / (missing * missing) * recovers * rate;
         }
         o.rho = rho;
-        o.residual = [o.f_n * o.factor / force - rho, o.f_t[0] / o.f_n - r[0], o.f_t[1] / o.f_n - r[1]];
+        o.residual = [o.f_n * o.factor / force - rho * self.kept(), o.f_t[0] / o.f_n - r[0], o.f_t[1] / o.f_n - r[1]];
         (rho_y, rho_h)
     }
 
@@ -248,7 +306,8 @@ impl Step<'_> {
         let softer = row.slope[LN_STIFFNESS] - row.slope[LN_FORCE];
         let dq = dy * (t.rate * stiff / (force * self.table.constants.vertex_length * friction) + t.q * softer);
         let dx: [f64; 2] = std::array::from_fn(|i| t.c * (dr[i] - t.x[i] * dq));
-        let dround = (t.x[0] * dx[0] + t.x[1] * dx[1]) / t.round;
+        let dz = -t.c * t.untwisted * dq;
+        let dround = (t.x[0] * dx[0] + t.x[1] * dx[1] + t.untwisted * dz) / t.round;
         let dfar = if t.far > 0.0 { dround * t.round / t.far } else { 0.0 };
         let dratio = if t.ratio > 0.0 { (t.r[0] * dr[0] + t.r[1] * dr[1]) / t.ratio } else { 0.0 };
         let dfactor = t.factor_by[0] * dratio + t.factor_by[1] * dfar + t.factor_by[2] * dy;
@@ -267,6 +326,11 @@ impl Step<'_> {
             one(4 + i) - (dsteady * t.r[i] + flow.steady * dr[i] + dsudden * t.v[i] + turns)
         });
         let dradial = self.radial * t.rate * dy;
+        let dturn = self.twist.map_or(0.0, |twist| {
+            let dsudden = t.c / t.round * (dsudden - flow.sudden * (t.c * dq + dround / t.round));
+            let by_flow = dsteady * t.turned + dsudden * (t.turned - twist.vertex);
+            -TurningConstants::FITTED.twist_flow / TWIST_LEVER * t.per_turn * by_flow
+        });
         o.n_by[j] = df;
         for i in 0..2 {
             let m = held.by_move;
@@ -277,12 +341,13 @@ impl Step<'_> {
                 + stiffens
                 + held.by_force[i] * df / o.f_n
                 + held.by_eta[i] * (t.eta_by[0] * dy + t.eta_by[1] * dh)
-                + if j > 2 { held.by_worn[i] * self.worn_by[j - 3] } else { 0.0 };
+                + if j > 2 { held.by_worn[i] * self.worn_by[j - 3] } else { 0.0 }
+                + held.by_turn[i] * dturn;
             o.by[j][1 + i] = (o.t_by[j][i] - o.f_t[i] * df / o.f_n) / o.f_n - dr[i];
         }
         let share = o.f_n * o.factor / force;
         let by_factor = df / o.f_n + dfactor / o.factor - row.slope[LN_FORCE] * dy;
-        o.by[j][0] = share * by_factor - t.rho_y * dy - t.rho_h * dh;
+        o.by[j][0] = share * by_factor - self.kept() * (t.rho_y * dy + t.rho_h * dh);
     }
 }
 

@@ -1,6 +1,7 @@
 //! One increment of one contact. The C header has the functions of `table`, `sliders`, `step` and
 //! this file, in that order, and does the same operations.
 
+use super::sectors::{Sectors, Twist};
 use super::sliders::energy;
 use super::state::{ContactResponse, ContactState, MOST};
 use super::step::{Guess, LESS, Step, Terms};
@@ -8,6 +9,7 @@ use super::table::{
     COLUMNS, FIRST_N, GAMMA, LN_FORCE, LN_RADIUS, LN_STIFFNESS, RADIAL_SLIP, Row, SLIDERS, SOFTENING, SUDDEN, Table, UNSHEARED_N,
     exponent, lost,
 };
+use super::turning_constants::TurningConstants;
 
 /// Steps of Newton.
 const STEPS: usize = 20;
@@ -28,7 +30,7 @@ const HARDLY: f64 = 0.02;
 const LEAST: f64 = 1e-30;
 
 /// F_N at an elastic approach of a contact that is wider than its F_N by `stiffened`.
-fn elastic_force(row: &Row, e: f64, stiffened: f64) -> f64 {
+pub(super) fn elastic_force(row: &Row, e: f64, stiffened: f64) -> f64 {
     let gamma = row.value[GAMMA];
     row.value[LN_FORCE] * (gamma * (e / row.approach).ln() + (gamma - 1.0) * stiffened.ln_1p()).exp()
 }
@@ -70,7 +72,20 @@ pub(super) fn stored_energy(table: &Table, state: &ContactState) -> f64 {
 
 /// The contact moved to h and by d.
 pub(super) fn moved(table: &Table, state: &ContactState, h: f64, d: [f64; 2]) -> (ContactState, ContactResponse) {
-    let (mut step, released) = begin(table, state, h, d);
+    let (state, response, _) = moved_with(table, state, None, h, d);
+    (state, response)
+}
+
+/// The same with a twist, or none: its sectors' forces and its vertex after the step, where there is
+/// contact.
+pub(super) fn moved_with(
+    table: &Table,
+    state: &ContactState,
+    twist: Option<&Twist>,
+    h: f64,
+    d: [f64; 2],
+) -> (ContactState, ContactResponse, Option<(Sectors, f64)>) {
+    let (mut step, released) = begin(table, state, twist, h, d);
     let mut o = Guess::default();
     let elastic = step.elastic(&mut o);
     let force = step.row.value[LN_FORCE];
@@ -80,22 +95,24 @@ pub(super) fn moved(table: &Table, state: &ContactState, h: f64, d: [f64; 2]) ->
         o.factor = step.factor_at(trial);
     }
     let load = o.f_n / force;
-    if elastic.is_none() || load * o.factor <= step.rho * (1.0 + 1e-11) {
-        if let Some(terms) = elastic {
-            step.slopes(&terms, &mut o);
+    if elastic.is_none() || load * o.factor <= step.rho * step.kept() * (1.0 + 1e-11) {
+        if let Some(terms) = &elastic {
+            step.slopes(terms, &mut o);
         }
         let tangent = std::array::from_fn(|j| o.slopes(j, [0.0; 3]));
-        return (step.keep(&o, h, 0.0, state.softened, released), step.answer(&o, 0.0, tangent));
+        let sectors = elastic.and_then(|terms| Some((*terms.sectors?, twist?.vertex)));
+        return (step.keep(&o, h, 0.0, state.softened, released), step.answer(&o, 0.0, tangent), sectors);
     }
     let (r, factor) = step.begin_flow(&o, trial);
     let guess = step.first_guess(load * factor);
     let (y, terms) = step.newton(guess, r, &mut o).unwrap_or_else(|| step.bracket(guess, trial, &mut o));
-    if let Some(terms) = terms {
-        step.slopes(&terms, &mut o);
+    if let Some(terms) = &terms {
+        step.slopes(terms, &mut o);
     }
     let tangent = std::array::from_fn(|j| o.slopes(j, o.solve(o.by[3 + j]).unwrap_or_default()));
     let [softened, released] = step.left_released(&o, y);
-    (step.keep(&o, h, y, softened, released), step.answer(&o, y, tangent))
+    let sectors = terms.and_then(|terms| Some((*terms.sectors?, o.twist_vertex)));
+    (step.keep(&o, h, y, softened, released), step.answer(&o, y, tangent), sectors)
 }
 
 /// F_N and F_T over it that a state holds; none without contact.
@@ -109,7 +126,7 @@ fn held(row: &Row, state: &ContactState) -> Option<(f64, [f64; 2])> {
 }
 
 /// A step before it flows, and the greatest share of F_N released after it.
-fn begin<'a>(table: &'a Table, state: &'a ContactState, h: f64, d: [f64; 2]) -> (Step<'a>, f64) {
+fn begin<'a>(table: &'a Table, state: &'a ContactState, twist: Option<&'a Twist>, h: f64, d: [f64; 2]) -> (Step<'a>, f64) {
     let depth = table.first + state.hardened;
     let row = table.read(depth, COLUMNS);
     let e = state.approach + (h - state.h);
@@ -123,12 +140,13 @@ fn begin<'a>(table: &'a Table, state: &'a ContactState, h: f64, d: [f64; 2]) -> 
             rho_slope = if e > 0.0 { whole * 2.0 * released * gamma * share / e } else { 0.0 };
         }
     }
-    let (worn, worn_by) = worn(table, &row, state, e, d);
+    let (worn, worn_by) = worn(table, &row, (state, twist), e, d);
     let exponent_at = |worn: f64| exponent(row.value[FIRST_N], row.value[UNSHEARED_N], table.later, worn);
     let (exponent, exponent_before) = (exponent_at(worn), exponent_at(worn + LESS));
     let step = Step {
         table,
         state,
+        twist,
         row,
         approach: e,
         d,
@@ -154,13 +172,15 @@ fn begin<'a>(table: &'a Table, state: &'a ContactState, h: f64, d: [f64; 2]) -> 
 /// How far it was sheared and its slip reversed, as a step goes on from there, with slopes by h and
 /// d. It follows r over a little way of d or F_N, and a press takes it back: a step that goes
 /// nowhere leaves it, and with it the sliders.
-fn worn(table: &Table, row: &Row, state: &ContactState, e: f64, d: [f64; 2]) -> (f64, [f64; 3]) {
+fn worn(table: &Table, row: &Row, (state, twist): (&ContactState, Option<&Twist>), e: f64, d: [f64; 2]) -> (f64, [f64; 3]) {
     let (mut worn, mut by) = (state.worn, [0.0; 3]);
     let Some((f_n, r)) = held(row, state) else { return (worn, by) };
     let (mu, constants, gamma) = (table.friction, &table.constants, row.value[GAMMA]);
     let r = r.map(|r| r / mu);
-    let size = (r[0] * r[0] + r[1] * r[1]).sqrt().min(1.0);
-    let mut to = worn.max(size);
+    let turning = TurningConstants::FITTED;
+    let twisted = twist.map_or(0.0, |twist| twist.ratio / (mu * turning.twist_yield));
+    let size = (r[0] * r[0] + r[1] * r[1] + twisted * twisted).sqrt().min(1.0);
+    let mut to = worn.max(size).max((twisted.abs() * turning.twist_worn).min(turning.twist_most));
     let vertex = state.vertex;
     let back = -(r[0] * vertex[0] + r[1] * vertex[1]);
     if back > 0.0 {
@@ -174,7 +194,8 @@ fn worn(table: &Table, row: &Row, state: &ContactState, e: f64, d: [f64; 2]) -> 
         let trial = if e > 0.0 { elastic_force(row, e, state.stiffened) } else { 0.0 };
         let k = 1.0 / (constants.follows * mu * f_n);
         let (kd, kn) = (row.value[LN_STIFFNESS] * k, if trial < f_n { -k * mu } else { k * mu });
-        let way = (d[0] * d[0] + d[1] * d[1]).sqrt();
+        let turn = twist.map_or(0.0, |twist| twist.along);
+        let way = (d[0] * d[0] + d[1] * d[1] + turn * turn).sqrt();
         let slope = (to - worn) * (-kd * way - kn * (trial - f_n)).exp();
         worn = to - slope;
         let along = |d: f64| if way > 0.0 { slope * kd * d / way } else { 0.0 };
@@ -193,7 +214,10 @@ impl Step<'_> {
     /// The yield factor at its start, at a ratio.
     fn factor_at(&self, r: [f64; 2]) -> f64 {
         let [x, y] = [r[0] - self.state.vertex[0], r[1] - self.state.vertex[1]];
-        self.table.factor(&self.row, (r[0] * r[0] + r[1] * r[1]).sqrt(), (x * x + y * y).sqrt()).0
+        let m = self.twisted();
+        let z = self.twist.map_or(0.0, |twist| m - twist.vertex);
+        let ratio = (r[0] * r[0] + r[1] * r[1] + m * m).sqrt();
+        self.table.factor(&self.row, ratio, (x * x + y * y + z * z).sqrt()).0
     }
 
     /// Sets the yield factor from which flow begins: that of the start of the step, or that at
@@ -209,7 +233,7 @@ impl Step<'_> {
         }
         self.rises = o.factor > self.growing;
         let rho = (1.0 - state.softened) * (1.0 - self.row.value[SOFTENING] * state.released * state.released);
-        let before = rho * self.row.value[LN_FORCE] / o.f_n;
+        let before = self.kept() * rho * self.row.value[LN_FORCE] / o.f_n;
         // Where h stays they are the same, and rounding is not to choose the slope.
         if before > self.growing * (1.0 + 1e-10) {
             self.growing = before;
@@ -221,7 +245,7 @@ impl Step<'_> {
     /// The hardening that brings F_N to the yield force, where the dent and D go on straight and r
     /// stays; `load` is F_N G over the yield force.
     fn first_guess(&self, load: f64) -> f64 {
-        let left = (-(load / self.rho).ln() / self.row.value[GAMMA]).exp();
+        let left = (-(load / (self.rho * self.kept())).ln() / self.row.value[GAMMA]).exp();
         let rate = self.row.dent_slope + left * self.approach / self.reach * self.row.approach_slope;
         let y = self.approach * (1.0 - left) / rate;
         if y > 0.0 { y.min(self.most()) } else { 0.0 }

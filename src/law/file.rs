@@ -120,9 +120,8 @@ impl LawFile {
     /// a simulation all is along fixed axes, also where two spheres pass each other.
     ///
     /// # Errors
-    /// Those of [`LawFile::contact_parameters`] and [`refuse_turns`].
+    /// Those of [`LawFile::contact_parameters`].
     pub fn follow(&self, case: &Case) -> Result<(Vec<PathPoint>, Vec<OutOfRange>), LawError> {
-        refuse_turns(case)?;
         let points = follow_centres(&self.contact_parameters(case)?, Centres::of(case), &case.path);
         let deepest = points.iter().map(|point| point.h).fold(0.0, f64::max);
         let out_of_range = if deepest > 0.0 { self.out_of_range(case, deepest)? } else { Vec::new() };
@@ -159,7 +158,7 @@ impl LawFile {
     }
 }
 
-/// Refuses a case that twists or rolls the sphere.
+/// Refuses a case that twists or rolls the sphere, where the moments have no place.
 ///
 /// # Errors
 /// [`LawError::NotCovered`].
@@ -168,7 +167,7 @@ pub fn refuse_turns(case: &Case) -> Result<(), LawError> {
         return Ok(());
     }
     Err(LawError::NotCovered {
-        problem: "the case twists or rolls the sphere, of which no law says anything",
-        remedy: "Leave out twist and roll, or simulate the case with `asperity run`",
+        problem: "the case twists or rolls the sphere, which the pictures of a law do not show",
+        remedy: "Leave out twist and roll, or take the moments from `asperity law predict`",
     })
 }

@@ -95,6 +95,7 @@ typedef uint64_t asperity_bits;
 #define ASPERITY_LEVELS @LEVELS@
 #define ASPERITY_PLACES @PLACES@ /* of a shape, at 1 - (1 - j/places)^2: denser at full slip */
 #define ASPERITY_SLIDERS 7
+#define ASPERITY_SECTORS 4       /* of a slider that twists: around the normal, from the first axis on */
 #define ASPERITY_PADDED 8        /* lanes of the sliders at work */
 #define ASPERITY_ALL_WEIGHTS 0.9999999999999999 /* the sum of their weights */
 
@@ -140,6 +141,15 @@ typedef struct asperity_state {
     asperity_real slider[3][ASPERITY_SLIDERS]; /* forces along the two axes, and radial */
 } asperity_state;
 
+/* What a contact that twists or rolls remembers besides; all zero before first contact. Forces over E R^2, moments over E R^3. */
+typedef struct asperity_turning {
+    asperity_real sector[ASPERITY_SECTORS][2][ASPERITY_SLIDERS]; /* forces of the sliders' sectors along the two axes: their mean is the slider's */
+    asperity_real twisted;   /* the twisting moment over a lever and F_N, as it counts for yield; follows */
+    asperity_real vertex;    /* that of the yield surface, likewise */
+    asperity_real rolled;    /* 0 to 1: share of the contact that has left what was pressed behind */
+    asperity_real moment[2]; /* of the roll, about the two axes */
+} asperity_turning;
+
 /* The answer of an increment. */
 typedef struct asperity_response {
     asperity_real f_n;          /* compression positive */
@@ -167,6 +177,12 @@ typedef struct asperity_tangent {
 #define ASPERITY_RECOVERS @RECOVERS@           /* how fast a press gives back what a release took */
 #define ASPERITY_FORGETS @FORGETS@             /* how fast a press takes back how far it was sheared, over dh_p/D */
 #define ASPERITY_FOLLOWS @FOLLOWS@             /* way over mu F_N/k_T in which the sliders' exponent follows what was sheared */
+#define ASPERITY_TWIST_STIFF @TWIST_STIFF@     /* stiffness of the sliders around the normal over that along the plane */
+#define ASPERITY_TWIST_LEVER @TWIST_LEVER@     /* M_twist over mu F_N a where all slips, of a plastic contact */
+#define ASPERITY_TWIST_WORN @TWIST_WORN@       /* how much more a twist wears than a shear of as much of its limit */
+#define ASPERITY_TWIST_FLOW @TWIST_FLOW@       /* what it flows with */
+#define ASPERITY_TWIST_MOST @TWIST_MOST@       /* up to here */
+#define ASPERITY_TWIST_YIELD @TWIST_YIELD@     /* what M_twist over that lever counts for yield, beside F_T */
 #define ASPERITY_STEPS 20                      /* of Newton */
 #define ASPERITY_BRACKETS 100                  /* where that does not find the way */
 #define ASPERITY_TOLERANCE 1e-12               /* of F_N over the yield force and of F_T/F_N */
@@ -285,6 +301,13 @@ typedef struct asperity_work {
     double slider[3][ASPERITY_PADDED];
 } asperity_work;
 
+/* A twist within a step: displacement at the contact's radius, what the memory holds of it, the ratio were nothing to flow, and by how much slip takes from it; and what a roll
+ * leaves of the yield force and of the flow. */
+typedef struct asperity_twist {
+    double along, ratio, vertex, trial, gives, kept, flows;
+    double sector[ASPERITY_SECTORS][2][ASPERITY_PADDED];
+} asperity_twist;
+
 /* A row of the table at a hardening depth, and its slopes; those of force and stiffness are of their logarithms. */
 typedef struct asperity_row {
     double value[ASPERITY_SOLVED], slope[ASPERITY_SOLVED];
@@ -304,11 +327,13 @@ typedef struct asperity_spot {
 typedef struct asperity_step {
     const asperity_table *t;
     const asperity_work *s;
+    const asperity_twist *twist; /* or none */
     asperity_row row; /* at its start */
     double friction, per_friction, h, d[2], depth, per_depth, log_h, dent, approach; /* depth: h_m at its start, log_h of it over the first row's; approach: D there */
     double e, level, f_n, wide, log_wide;                     /* of the elastic trial, level: ln(e/D); wide: g at its start */
     double worn, worn_by[3], share_worn[ASPERITY_PADDED];     /* how far sheared, slopes by h and d, and by it of a slider's share of what all carry */
     double radial, sudden, rho, rho_log, rho_slope, growing, growing_slope; /* slopes by h */
+    double twisted, kept;                                     /* of the twist, over F_N; what a roll has left of the yield force */
     int rises;                                                /* whether the yield factor of the elastic trial is above the one from which it grows */
     double old_f_n, old_f_t[2], old_stored[2];                  /* stored across and along the plane */
     double per_exponent, lost[ASPERITY_PADDED], limit[ASPERITY_PADDED], sum; /* of the sliders; the limits of a contact that is not released */
@@ -332,6 +357,7 @@ typedef struct asperity_guess {
     double m[3], radial[2], stiffer[2], wider[2];
     double by[6][3], n_by[6], t_by[6][2]; /* of the residuals and the forces, by y, r, h, d */
     double tangent[3][3];                 /* of F_N and F_T, by h and d */
+    double sector[ASPERITY_SECTORS][2][ASPERITY_PADDED], turn, untwisted, twist_vertex, turned, per_turn, by_turn[2], pushed[2][ASPERITY_PADDED]; /* of the twist: forces, displacement, distance from the vertex, the vertex, slopes of F_T */
 } asperity_guess;
 
 /* The row, or the level, before a place; 0 to last. */
@@ -423,6 +449,12 @@ ASPERITY_FN const double *asperity_per_weights(void) {
     return per_weight;
 }
 
+/* Levers of the sliders in a twist, over the contact's radius: those of punches as wide as their cells. */
+ASPERITY_FN const double *asperity_levers(void) {
+    static const double lever[ASPERITY_PADDED] = {@LEVERS@, 0.0};
+    return lever;
+}
+
 /* Approach, over that of the whole contact, at which each slider's annulus is lost, for the backbone 1 - (1 - x)^n (Jaeger). Cells end at (i/7)^(0.65/(n - 1)). */
 ASPERITY_FN void asperity_lost(double n, double lost[ASPERITY_PADDED]) {
     static const double inside[ASPERITY_SLIDERS] = {0.282280072469456, 0.442952421594438, 0.5765240178913213, 0.6950706036696828, 0.8035649361350993, 0.9046677863757268, 0.9999999999999999};
@@ -482,8 +514,8 @@ ASPERITY_FN double asperity_most_factor(const asperity_table *t, const asperity_
 
 /* The same at the start of a step. */
 ASPERITY_FN double asperity_factor_at(const asperity_step *p, const double r[2]) {
-    double slope[3], x = r[0] - p->s->vertex[0], y = r[1] - p->s->vertex[1];
-    return asperity_factor(p->t, p->per_friction, &p->row, asperity_find(sqrt(r[0] * r[0] + r[1] * r[1]) * p->per_friction), sqrt(x * x + y * y), slope);
+    double slope[3], x = r[0] - p->s->vertex[0], y = r[1] - p->s->vertex[1], m = p->twisted, z = p->twist ? m - p->twist->vertex : 0.0;
+    return asperity_factor(p->t, p->per_friction, &p->row, asperity_find(sqrt(r[0] * r[0] + r[1] * r[1] + m * m) * p->per_friction), sqrt(x * x + y * y + z * z), slope);
 }
 
 ASPERITY_FN double asperity_sum(const double x[ASPERITY_PADDED]) {
@@ -508,6 +540,69 @@ ASPERITY_FN double asperity_limits(const double *ASPERITY_ALONE lost, double eta
     return asperity_sum(carried);
 }
 
+/* Where the sectors are pulled by a twist. */
+ASPERITY_FN const double *asperity_around(int sector) {
+    static const double around[ASPERITY_SECTORS][2] = {{0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}, {1.0, 0.0}};
+    return around[sector];
+}
+
+/* Moves the sectors of the sliders of a contact that twists, each within the limit; a radial force is the same in all. With the slopes of their force. */
+ASPERITY_FN void asperity_slide_sectors(const asperity_step *p, double stiff, asperity_guess *ASPERITY_ALONE o) {
+    const double *weight = asperity_weights(), *lever = asperity_levers(), share = 1.0 / ASPERITY_SECTORS;
+    int i, j, c;
+    memset(o->by_turn, 0, sizeof o->by_turn);
+    memset(o->m, 0, sizeof o->m);
+    memset(o->radial, 0, sizeof o->radial);
+    memset(o->stiffer, 0, sizeof o->stiffer);
+    memset(o->wider, 0, sizeof o->wider);
+    o->slips = 1;
+    for (i = 0; i < ASPERITY_PADDED; i++) {
+        double k = stiff * weight[i], most = weight[i] * o->limit[i] * o->scale, bound = ASPERITY_RADIAL_MOST * most, turn = ASPERITY_TWIST_STIFF * lever[i];
+        double radially = p->s->slider[2][i] + k * o->move[2], radial = radially < bound ? radially : bound, left = 1.0;
+        o->most[i] = most;
+        o->radially[i] = radially;
+        o->slider[0][i] = o->slider[1][i] = o->pushed[0][i] = o->pushed[1][i] = 0.0;
+        for (j = 0; j < ASPERITY_SECTORS; j++) {
+            const double *around = asperity_around(j);
+            double d[2], f[2], square, keep = 1.0, u[3] = {0.0, 0.0, 0.0}, grows, moved;
+            for (c = 0; c < 2; c++) {
+                d[c] = o->move[c] + turn * o->turn * around[c];
+                f[c] = p->twist->sector[j][c][i] + k * d[c];
+            }
+            square = f[0] * f[0] + f[1] * f[1] + radial * radial;
+            if (square > most * most) {
+                double per = 1.0 / sqrt(square);
+                keep = most * per;
+                u[0] = f[0] * per;
+                u[1] = f[1] * per;
+                u[2] = radial * per;
+            }
+            left = left < keep ? left : keep;
+            grows = radially > bound ? 1.0 - keep * u[2] * ASPERITY_RADIAL_MOST : 1.0;
+            moved = u[0] * d[0] + u[1] * d[1] + (radially > bound ? 0.0 : u[2] * o->move[2]);
+            k = keep * share * weight[i];
+            o->m[0] += k * stiff * (1.0 - u[0] * u[0]);
+            o->m[1] -= k * stiff * u[0] * u[1];
+            o->m[2] += k * stiff * (1.0 - u[1] * u[1]);
+            for (c = 0; c < 2; c++) {
+                o->sector[j][c][i] = keep * f[c];
+                o->slider[c][i] += share * keep * f[c];
+                o->radial[c] -= radially > bound ? 0.0 : k * stiff * u[c] * u[2];
+                o->stiffer[c] += k * (d[c] - u[c] * moved);
+                o->pushed[c][i] += share * u[c] * grows;
+                o->by_turn[c] += k * stiff * turn * (around[c] - u[c] * (u[0] * around[0] + u[1] * around[1]));
+            }
+            k = stiff * weight[i];
+        }
+        o->slider[2][i] = left * radial; /* what the sector that gives way most leaves, so that none is beyond its limit */
+        for (c = 0; c < 2; c++) {
+            o->wider[c] += o->pushed[c][i] * most;
+        }
+    }
+    o->f_t[0] = asperity_sum(o->slider[0]);
+    o->f_t[1] = asperity_sum(o->slider[1]);
+}
+
 /* Moves the sliders within their limits. Loops of their own: a compiler makes lanes of short ones. */
 ASPERITY_FN void asperity_slide(const asperity_step *p, double stiff, asperity_guess *ASPERITY_ALONE o) {
     const double *weight = asperity_weights(), *limit = o->limit;
@@ -516,6 +611,10 @@ ASPERITY_FN void asperity_slide(const asperity_step *p, double stiff, asperity_g
     double *t0 = o->slider[0], *t1 = o->slider[1], *t2 = o->slider[2];
     int i;
     o->scale = scale;
+    if (p->twist) {
+        asperity_slide_sectors(p, stiff, o);
+        return;
+    }
     ASPERITY_LANES
     for (i = 0; i < ASPERITY_PADDED; i++) {
         o->most[i] = weight[i] * limit[i] * scale;
@@ -530,9 +629,12 @@ ASPERITY_FN void asperity_slide(const asperity_step *p, double stiff, asperity_g
     }
     ASPERITY_LANES
     for (i = 0; i < ASPERITY_PADDED; i++) {
-        double squared = t0[i] * t0[i] + t1[i] * t1[i] + t2[i] * t2[i], most = o->most[i];
-        o->squared[i] = squared;
-        o->over[i] = squared > most * most ? 1.0 : 0.0;
+        o->squared[i] = t0[i] * t0[i] + t1[i] * t1[i] + t2[i] * t2[i];
+    }
+    ASPERITY_LANES
+    for (i = 0; i < ASPERITY_PADDED; i++) {
+        double most = o->most[i];
+        o->over[i] = o->squared[i] > most * most ? 1.0 : 0.0;
     }
     o->slips = asperity_sum(o->over) > 0.0;
     if (o->slips) {
@@ -550,10 +652,14 @@ ASPERITY_FN void asperity_slide(const asperity_step *p, double stiff, asperity_g
 }
 
 /* Slopes of their force: by the displacement (m, radial), by the stiffness, by the limit. Those that stick have no direction of slip. */
-ASPERITY_FN void asperity_slide_slopes(double stiff, asperity_guess *ASPERITY_ALONE o) {
+ASPERITY_FN void asperity_slide_slopes(const asperity_step *p, double stiff, asperity_guess *ASPERITY_ALONE o) {
     const double *weight = asperity_weights(), *t0 = o->slider[0], *t1 = o->slider[1], *t2 = o->slider[2];
     double sums[9][ASPERITY_PADDED], free[ASPERITY_PADDED], d0 = o->move[0], d1 = o->move[1], d2 = o->move[2];
     int i;
+    if (p->twist) {
+        return; /* those of the sectors are known */
+    }
+    o->by_turn[0] = o->by_turn[1] = 0.0;
     o->radial[0] = o->radial[1] = o->wider[0] = o->wider[1] = o->m[1] = 0.0;
     if (!o->slips) {
         o->m[0] = o->m[2] = stiff * ASPERITY_ALL_WEIGHTS;
@@ -598,6 +704,7 @@ ASPERITY_FN int asperity_elastic(const asperity_step *p, asperity_guess *ASPERIT
     o->move[0] = p->d[0];
     o->move[1] = p->d[1];
     o->move[2] = 0.0;
+    o->turn = p->twist ? p->twist->along : 0.0;
     o->width = p->wide;
     if (!(p->e > 0.0)) {
         o->f_n = o->f_t[0] = o->f_t[1] = 0.0;
@@ -605,6 +712,9 @@ ASPERITY_FN int asperity_elastic(const asperity_step *p, asperity_guess *ASPERIT
         o->reach = p->s->reach;
         for (i = 0; i < ASPERITY_PADDED; i++) {
             o->slider[0][i] = o->slider[1][i] = o->slider[2][i] = 0.0;
+        }
+        if (p->twist) {
+            memset(o->sector, 0, sizeof o->sector);
         }
         return 0;
     }
@@ -621,7 +731,11 @@ ASPERITY_FN int asperity_elastic(const asperity_step *p, asperity_guess *ASPERIT
 ASPERITY_FN void asperity_worn_slopes(const asperity_step *p, const asperity_guess *o, double by[2]) {
     int i;
     by[0] = by[1] = 0.0;
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
+    for (i = 0; p->twist && i < ASPERITY_SLIDERS; i++) {
+        by[0] += o->pushed[0][i] * asperity_weights()[i] * p->friction * o->f_n * p->share_worn[i];
+        by[1] += o->pushed[1][i] * asperity_weights()[i] * p->friction * o->f_n * p->share_worn[i];
+    }
+    for (i = 0; !p->twist && i < ASPERITY_SLIDERS; i++) {
         if (o->slips && o->over[i] > 0.0 && o->most[i] > 0.0) {
             double held = o->radially[i] > ASPERITY_RADIAL_MOST * o->most[i] ? ASPERITY_RADIAL_MOST : 0.0;
             double along = (1.0 - o->keep[i] * o->slider[2][i] / o->most[i] * held) * asperity_weights()[i] * p->friction * o->f_n * p->share_worn[i] / o->most[i];
@@ -644,7 +758,11 @@ ASPERITY_FN void asperity_eta_slopes(const asperity_step *p, const asperity_gues
         opening[i] = i == 0 && o->eta - p->lost[0] < 0.1 * o->eta ? 0.1 : o->eta > p->lost[i] ? 1.0 : 0.0;
         open += weight[i] * opening[i];
     }
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
+    for (i = 0; p->twist && i < ASPERITY_SLIDERS; i++) {
+        by[0] += o->pushed[0][i] * weight[i] * o->scale * (opening[i] - o->limit[i] * open / o->sum);
+        by[1] += o->pushed[1][i] * weight[i] * o->scale * (opening[i] - o->limit[i] * open / o->sum);
+    }
+    for (i = 0; !p->twist && i < ASPERITY_SLIDERS; i++) {
         if (o->over[i] > 0.0 && o->most[i] > 0.0) {
             double held = o->radially[i] > ASPERITY_RADIAL_MOST * o->most[i] ? ASPERITY_RADIAL_MOST : 0.0;
             double along = (1.0 - o->keep[i] * o->slider[2][i] / o->most[i] * held) * weight[i] * o->scale * (opening[i] - o->limit[i] * open / o->sum) / o->most[i];
@@ -658,7 +776,7 @@ ASPERITY_FN void asperity_eta_slopes(const asperity_step *p, const asperity_gues
 ASPERITY_FN void asperity_elastic_slopes(const asperity_step *p, asperity_guess *ASPERITY_ALONE o) {
     double rise = p->row.value[ASPERITY_GAMMA] / p->e, opens[2], by_worn[2];
     int j;
-    asperity_slide_slopes(p->row.stiff, o);
+    asperity_slide_slopes(p, p->row.stiff, o);
     asperity_eta_slopes(p, o, opens);
     asperity_worn_slopes(p, o, by_worn);
     o->tangent[0][0] = o->f_n * rise;
@@ -684,11 +802,22 @@ ASPERITY_FN void asperity_flow(const asperity_step *p, asperity_spot at, double 
     o->flow_y = (rate * steady + o->hardens * flow_s[1] * row->share_slope) * per;
     o->flow_r = o->hardens * (flow_s[0] * p->per_friction - steady * per) * per;
     o->sudden_y = rate * p->sudden + o->grown * (row->approach_slope * o->mobile + gap * mobile_s[1] * row->share_slope);
+    if (p->twist) {
+        o->flow *= p->twist->flows;
+        o->flow_y *= p->twist->flows;
+        o->flow_r *= p->twist->flows;
+    }
     for (i = 0; i < 2; i++) {
         o->slip[i] = o->flow * o->r[i] + o->sudden * o->x[i] * per_round;
         o->move[i] = p->d[i] - o->slip[i];
     }
     o->move[2] = p->radial * o->hardens;
+    if (p->twist) { /* by the ratio after the flow, were all to stick: by the one before it, flow would overshoot */
+        double sudden = o->sudden * o->c * per_round, gives = p->twist->gives, vertex = p->twist->vertex;
+        o->per_turn = 1.0 / (1.0 + gives * (o->flow + sudden));
+        o->turned = (p->twist->trial + gives * sudden * vertex) * o->per_turn;
+        o->turn = p->twist->along - ASPERITY_TWIST_FLOW / ASPERITY_TWIST_LEVER * (o->flow * o->turned + sudden * (o->turned - vertex));
+    }
 }
 
 /* The yield factor at a guess, and the elastic force that goes with it. Returns 0 where contact is lost. */
@@ -715,8 +844,10 @@ ASPERITY_FN int asperity_yield(const asperity_step *p, double y, const double r[
         o->x[i] = (r[i] - s->vertex[i]) * o->c;
         o->vertex[i] = r[i] - o->x[i];
     }
-    o->ratio = sqrt(r[0] * r[0] + r[1] * r[1]);
-    o->far = sqrt(o->x[0] * o->x[0] + o->x[1] * o->x[1]);
+    o->untwisted = p->twist ? (p->twisted - p->twist->vertex) * o->c : 0.0;
+    o->twist_vertex = p->twisted - o->untwisted;
+    o->ratio = sqrt(r[0] * r[0] + r[1] * r[1] + p->twisted * p->twisted);
+    o->far = sqrt(o->x[0] * o->x[0] + o->x[1] * o->x[1] + o->untwisted * o->untwisted);
     o->round = sqrt(o->far * o->far + eps * eps);
     at = asperity_find(o->ratio * p->per_friction);
     o->factor = asperity_factor(t, p->per_friction, row, at, o->far, o->part);
@@ -773,7 +904,7 @@ ASPERITY_FN int asperity_evaluate(const asperity_step *p, double y, const double
         o->rho_h *= o->rho * missing * missing * p->rho_log * p->rho_log / p->rho;
     }
     per = 1.0 / o->f_n;
-    o->residual[0] = o->f_n * o->factor / o->row.force - o->rho;
+    o->residual[0] = o->f_n * o->factor / o->row.force - o->rho * p->kept;
     o->residual[1] = o->f_t[0] * per - r[0];
     o->residual[2] = o->f_t[1] * per - r[1];
     return 1;
@@ -789,16 +920,17 @@ ASPERITY_FN void asperity_guess_slopes(const asperity_step *p, int count, asperi
     double by_worn[2] = {0.0, 0.0}, opens[2], load = o->f_n * o->factor / row->force, by_width = (gamma - 1.0) / o->width;
     const int grows = o->grown > 0.0 || (count == 3 && p->rises && o->factor > p->growing - 1e-9); /* where it begins to, Newton's first step has to know */
     int i, j;
-    asperity_slide_slopes(row->stiff, o);
+    asperity_slide_slopes(p, row->stiff, o);
     asperity_eta_slopes(p, o, opens);
     if (count > 3) {
         asperity_worn_slopes(p, o, by_worn);
     }
     for (j = 0; j < count; j++) { /* along y, r, h, d */
-        double dy = j == 0 ? 1.0 : 0.0, dr[2] = {j == 1 ? 1.0 : 0.0, j == 2 ? 1.0 : 0.0}, dx[2], dn[2], dmove[3], dround, dfar, dratio, dfactor, df, dsudden, dflow;
+        double dy = j == 0 ? 1.0 : 0.0, dr[2] = {j == 1 ? 1.0 : 0.0, j == 2 ? 1.0 : 0.0}, dx[2], dn[2], dmove[3], dz, dround, dfar, dratio, dfactor, df, dsudden, dflow, dturn;
         dx[0] = o->c * (dr[0] - o->x[0] * q_y * dy);
         dx[1] = o->c * (dr[1] - o->x[1] * q_y * dy);
-        dround = v[0] * dx[0] + v[1] * dx[1];
+        dz = -o->c * o->untwisted * q_y * dy;
+        dround = v[0] * dx[0] + v[1] * dx[1] + o->untwisted * per_round * dz;
         dfar = dround * far;
         dratio = (o->r[0] * dr[0] + o->r[1] * dr[1]) * per_ratio;
         dfactor = o->part[0] * dratio + o->part[1] * dfar + o->part[2] * dy;
@@ -813,14 +945,19 @@ ASPERITY_FN void asperity_guess_slopes(const asperity_step *p, int count, asperi
             dmove[i] = (j == 4 + i ? 1.0 : 0.0) - dn[i];
         }
         dmove[2] = p->radial * rate * dy;
+        dturn = 0.0;
+        if (p->twist) {
+            dz = o->c * per_round * (dsudden - o->sudden * (o->c * q_y * dy + dround * per_round));
+            dturn = -ASPERITY_TWIST_FLOW / ASPERITY_TWIST_LEVER * o->per_turn * (dflow * o->turned + dz * (o->turned - p->twist->vertex));
+        }
         o->n_by[j] = o->f_n * df;
         for (i = 0; i < 2; i++) {
             double across = o->m[i] * dmove[0] + o->m[i + 1] * dmove[1];
             o->t_by[j][i] = across + o->radial[i] * dmove[2] + o->stiffer[i] * row->stiff * row->slope[ASPERITY_LN_STIFFNESS] * dy + o->wider[i] * df + (j > 2 ? by_worn[i] * p->worn_by[j - 3] : 0.0) +
-                            opens[i] * (o->eta_y * dy + (j == 3 ? o->eta_h : 0.0));
+                            opens[i] * (o->eta_y * dy + (j == 3 ? o->eta_h : 0.0)) + o->by_turn[i] * dturn;
             o->by[j][1 + i] = (o->t_by[j][i] - o->f_t[i] * df) * per - dr[i];
         }
-        o->by[j][0] = load * (df + dfactor / o->factor - row->slope[ASPERITY_LN_FORCE] * dy) - (j == 0 ? o->rho_y : j == 3 ? o->rho_h : 0.0);
+        o->by[j][0] = load * (df + dfactor / o->factor - row->slope[ASPERITY_LN_FORCE] * dy) - p->kept * (j == 0 ? o->rho_y : j == 3 ? o->rho_h : 0.0);
     }
 }
 
@@ -870,6 +1007,8 @@ ASPERITY_FN void asperity_prepare(const asperity_table *t, const asperity_work *
     double e0, gamma, level;
     p->t = t;
     p->s = s;
+    p->twisted = p->twist ? p->twist->ratio : 0.0;
+    p->kept = p->twist ? p->twist->kept : 1.0;
     p->friction = (double)t->friction > 1e-9 ? (double)t->friction : 1e-9;
     p->per_friction = 1.0 / p->friction;
     p->h = h;
@@ -1070,7 +1209,7 @@ ASPERITY_FN double asperity_bracket(const asperity_step *p, double guess, double
  * a better guess than the trial's for what flows on. Returns the yield factor there. */
 ASPERITY_FN double asperity_grow_from(asperity_step *p, double softening, double factor, double r[2]) {
     const asperity_work *s = p->s;
-    double before = (1.0 - s->softened) * (1.0 - softening * s->released * s->released) * p->row.force / p->f_n, at = factor;
+    double before = p->kept * (1.0 - s->softened) * (1.0 - softening * s->released * s->released) * p->row.force / p->f_n, at = factor;
     p->growing = 1.0;
     p->growing_slope = 0.0;
     if (p->old_f_n > 0.0) {
@@ -1090,7 +1229,7 @@ ASPERITY_FN double asperity_grow_from(asperity_step *p, double softening, double
 /* The hardening that brings F_N to the yield force, where the dent and D go on straight and r stays: `load` is F_N G/P, `factor` its G. */
 ASPERITY_FN double asperity_first_guess(const asperity_step *p, double load) {
     double gamma = p->row.value[ASPERITY_GAMMA], left, y;
-    left = asperity_exponential(-asperity_logarithm(load / p->rho) / gamma);
+    left = asperity_exponential(-asperity_logarithm(load / (p->rho * p->kept)) / gamma);
     y = p->e * (1.0 - left) / (p->row.dent_slope + left * p->e / p->approach * p->row.approach_slope);
     return y > 0.0 ? (y < asperity_most(p) ? y : asperity_most(p)) : 0.0;
 }
@@ -1104,7 +1243,7 @@ ASPERITY_FN double asperity_sliders_n(const asperity_step *p, double worn) {
  * leaves it, and with it the sliders. Slopes by h and d, for the tangent. */
 ASPERITY_FN void asperity_wear(asperity_step *p) {
     const double *vertex = p->s->vertex;
-    double gamma = p->row.value[ASPERITY_GAMMA], rate = p->row.dent_slope, per, r[2], size, to, length, back, pressed;
+    double gamma = p->row.value[ASPERITY_GAMMA], rate = p->row.dent_slope, per, r[2], size, turned, to, length, back, pressed;
     p->worn = p->s->worn;
     p->worn_by[0] = p->worn_by[1] = p->worn_by[2] = 0.0;
     if (!(p->old_f_n > 0.0)) {
@@ -1113,9 +1252,13 @@ ASPERITY_FN void asperity_wear(asperity_step *p) {
     per = p->per_friction / p->old_f_n;
     r[0] = p->old_f_t[0] * per;
     r[1] = p->old_f_t[1] * per;
-    size = sqrt(r[0] * r[0] + r[1] * r[1]);
+    size = p->twisted * p->per_friction / ASPERITY_TWIST_YIELD;
+    turned = fabs(size) * ASPERITY_TWIST_WORN;
+    turned = turned < ASPERITY_TWIST_MOST ? turned : ASPERITY_TWIST_MOST;
+    size = sqrt(r[0] * r[0] + r[1] * r[1] + size * size);
     size = size < 1.0 ? size : 1.0;
     to = p->worn > size ? p->worn : size;
+    to = to > turned ? to : turned;
     back = -(r[0] * vertex[0] + r[1] * vertex[1]);
     if (back > 0.0) { /* slip against the vertex of a contact that was sheared */
         double sheared = to < 1.0 ? to : 1.0, reversed;
@@ -1125,7 +1268,7 @@ ASPERITY_FN void asperity_wear(asperity_step *p) {
         to = to > reversed ? to : reversed;
     }
     if (to > p->worn) {
-        double k = per / ASPERITY_FOLLOWS, d = sqrt(p->d[0] * p->d[0] + p->d[1] * p->d[1]), kd = p->row.stiff * k, kn = (p->f_n < p->old_f_n ? -k : k) * p->friction;
+        double k = per / ASPERITY_FOLLOWS, turn = p->twist ? p->twist->along : 0.0, d = sqrt(p->d[0] * p->d[0] + p->d[1] * p->d[1] + turn * turn), kd = p->row.stiff * k, kn = (p->f_n < p->old_f_n ? -k : k) * p->friction;
         double left = asperity_exponential_near(-kd * d - kn * (p->f_n - p->old_f_n)), slope = (to - p->worn) * left;
         p->worn = to - slope;
         p->worn_by[0] = p->e > 0.0 ? slope * kn * gamma * p->f_n / p->e : 0.0;
@@ -1195,9 +1338,11 @@ ASPERITY_FN void asperity_solution_slopes(const asperity_step *p, asperity_guess
 
 /* One step. What was stored and done before is left in p. */
 ASPERITY_FN void asperity_move(
-    const asperity_table *t, const asperity_work *s, double h, const double d[2], int slopes, asperity_step *p, asperity_work *next, asperity_guess *ASPERITY_ALONE o) {
+    const asperity_table *t, const asperity_work *s, const asperity_twist *twist, double h, const double d[2], int slopes, asperity_step *p, asperity_work *next,
+    asperity_guess *ASPERITY_ALONE o) {
     double softening, released, r[2] = {0.0, 0.0}, start[2], y, guess, gamma, load = 0.0, factor;
     int touches;
+    p->twist = twist;
     asperity_prepare(t, s, h, d, p);
     asperity_wear(p);
     gamma = p->row.value[ASPERITY_GAMMA];
@@ -1210,9 +1355,9 @@ ASPERITY_FN void asperity_move(
         r[0] = o->f_t[0] / o->f_n;
         r[1] = o->f_t[1] / o->f_n;
         load = o->f_n / p->row.force;
-        o->factor = load * asperity_most_factor(t, &p->row, p->friction) <= p->rho ? 0.0 : asperity_factor_at(p, r);
+        o->factor = load * asperity_most_factor(t, &p->row, p->friction) <= p->rho * p->kept ? 0.0 : asperity_factor_at(p, r);
     }
-    if (load * o->factor <= p->rho * (1.0 + 1e-11)) {
+    if (load * o->factor <= p->rho * p->kept * (1.0 + 1e-11)) {
         memset(o->tangent, 0, sizeof o->tangent);
         if (slopes && touches) {
             asperity_wear_slopes(p, o);
@@ -1356,11 +1501,10 @@ ASPERITY_FN double asperity_radius(const asperity_table *t, const asperity_work 
                                 (row.value[ASPERITY_GAMMA] - 1.0) * asperity_logarithm((1.0 + s->stiffened) * s->approach / row.approach));
 }
 
-/* Moves a contact to the indentation h and along the plane by `increment`. `next` may be `state`; `tangent` may be NULL. Where h or the increment is not finite,
- * or the state is not sound, nothing in the answer is a number and the state stays as it was. */
-ASPERITY_FN void asperity_update(
-    const asperity_table *t, asperity_real radius, asperity_real modulus, const asperity_state *state, asperity_real h, const asperity_real increment[2],
-    asperity_state *next, asperity_response *out, asperity_tangent *tangent) {
+/* The update with a twist, or none; its forces around the normal are left there. */
+ASPERITY_FN void asperity_advance(
+    const asperity_table *t, asperity_real radius, asperity_real modulus, const asperity_state *state, asperity_twist *twist, asperity_real h,
+    const asperity_real increment[2], asperity_state *next, asperity_response *out, asperity_tangent *tangent) {
     const asperity_real zero = ASPERITY_R(0.0);
     asperity_real d0 = increment[0] / radius, d1 = increment[1] / radius, size;
     double force = (double)modulus * (double)radius * (double)radius, work = force * (double)radius, stiff = (double)modulus * (double)radius, d[2], total, slip;
@@ -1385,6 +1529,9 @@ ASPERITY_FN void asperity_update(
         *next = *state;
         next->h = h;
         next->approach = approach;
+        if (twist) {
+            memset(twist->sector, 0, sizeof twist->sector);
+        }
         return;
     }
     size = ASPERITY_ABS(d0) > ASPERITY_ABS(d1) ? ASPERITY_ABS(d0) : ASPERITY_ABS(d1);
@@ -1395,7 +1542,7 @@ ASPERITY_FN void asperity_update(
     d[0] = (double)d0;
     d[1] = (double)d1;
     asperity_begin(state, &s);
-    asperity_move(t, &s, (double)h, d, tangent != NULL, &first, &after, &o);
+    asperity_move(t, &s, twist, (double)h, d, tangent != NULL, &first, &after, &o);
     if (!asperity_is_finite(ASPERITY_R(o.stored)) || !asperity_is_finite(ASPERITY_R(o.f_n + o.f_t[0] + o.f_t[1]))) {
         asperity_refuse(out, tangent);
         *next = *state;
@@ -1428,6 +1575,18 @@ ASPERITY_FN void asperity_update(
         tangent->a = ASPERITY_R(asperity_radius(t, &after) * (double)radius);
     }
     asperity_end(&after, next);
+    if (twist) {
+        memcpy(twist->sector, o.sector, sizeof o.sector);
+        twist->vertex = o.plastic && o.f_n > 0.0 ? o.twist_vertex : twist->vertex;
+    }
+}
+
+/* Moves a contact to the indentation h and along the plane by `increment`. `next` may be `state`; `tangent` may be NULL. Where h or the increment is not finite,
+ * or the state is not sound, nothing in the answer is a number and the state stays as it was. */
+ASPERITY_FN void asperity_update(
+    const asperity_table *t, asperity_real radius, asperity_real modulus, const asperity_state *state, asperity_real h, const asperity_real increment[2],
+    asperity_state *next, asperity_response *out, asperity_tangent *tangent) {
+    asperity_advance(t, radius, modulus, state, NULL, h, increment, next, out, tangent);
 }
 
 /* Elastic energy that a contact stores. */
@@ -1439,6 +1598,7 @@ ASPERITY_FN asperity_real asperity_stored_energy(const asperity_table *t, asperi
         return asperity_no_number();
     }
     asperity_begin(state, &s);
+    p.twist = NULL;
     asperity_prepare(t, &s, s.h, none, &p);
     return ASPERITY_R((p.old_stored[0] + p.old_stored[1]) * (double)modulus * (double)radius * (double)radius * (double)radius);
 }

@@ -16,12 +16,14 @@
  *   asperity_stand_in().
  * - What has no answer gets none: where the centres coincide, a place, a velocity or the memory is no number, or the table is of the other kind, the forces are no numbers, a flag
  *   says why, and the memory stays as it was.
+ * - Twist and roll: asperity_spheres_turning() and asperity_sphere_wall_turning() take and give a second memory, an asperity_turning, all zero before first contact; the torques
+ *   then have the moments of twist and roll. Without it, as in asperity_spheres(), a contact does not feel that the bodies turn against each other at one point.
  * - A body that no force moves (frozen, driven) has the mass INFINITY, one of a rigid body the mass of that: damping goes by it.
  */
 #ifndef ASPERITY_CONTACT3D_H
 #define ASPERITY_CONTACT3D_H
 
-#include "asperity_contact.h"
+#include "asperity_turning.h"
 
 /* Flags of asperity_forces. */
 enum {
@@ -158,6 +160,22 @@ ASPERITY_FN void asperity_exchange(asperity_contact *contact) {
     }
 }
 
+/* The same of the memory of twist and roll. */
+ASPERITY_FN void asperity_exchange_turning(asperity_turning *turning) {
+    int j, k;
+    for (k = 0; k < ASPERITY_SLIDERS; k++) {
+        for (j = 0; j < ASPERITY_SECTORS; j++) {
+            turning->sector[j][0][k] = -turning->sector[j][0][k];
+        }
+        for (j = 0; j < 2; j++) { /* those on the second axis change places */
+            asperity_real kept = turning->sector[1][j][k];
+            turning->sector[1][j][k] = turning->sector[3][j][k];
+            turning->sector[3][j][k] = kept;
+        }
+    }
+    turning->moment[0] = -turning->moment[0];
+}
+
 /* Whether a contact's memory may go: it never touched, or the gap is wider than the dent is deep, so that a next contact lands elsewhere. */
 ASPERITY_FN int asperity_may_forget(const asperity_contact *contact) {
     return contact->state.h < ASPERITY_R(0.0) && -contact->state.h >= contact->state.h_max;
@@ -258,11 +276,14 @@ ASPERITY_FN asperity_real asperity_allowed(const asperity_real f[2], const asper
     return share < ASPERITY_R(1.0) ? share : ASPERITY_R(1.0);
 }
 
-/* What both kinds of contact do once normal, lever arms and relative velocity are known: n from j to i, v that of i's point of contact relative to j's. */
+/* What both kinds of contact do once normal, lever arms and relative velocity are known: n from j to i, v that of i's point of contact relative to j's, `turns` the spin of i
+ * relative to j. `turning` is NULL where twist and roll are left out. */
 ASPERITY_FN void asperity_contact_forces(
     const asperity_law3d *law, asperity_real radius, asperity_real mass, asperity_real overlap, const asperity_real n[3], const asperity_real v[3],
-    const asperity_real spin[3], asperity_real arm_i, asperity_real arm_j, asperity_real dt, const asperity_contact *before, asperity_contact *after, asperity_forces *out) {
+    const asperity_real spin[3], const asperity_real turns[3], asperity_real arm_i, asperity_real arm_j, asperity_real dt, const asperity_contact *before, asperity_contact *after,
+    const asperity_turning *turning, asperity_turning *turning_after, asperity_forces *out) {
     asperity_contact c = *before;
+    asperity_moments moments;
     asperity_response answer;
     asperity_real e1[3], e2[3], d[2], along[2], share = law->table->share, approaching = -asperity_dot(v, n), tangential[3], turn[3], f_n, factor, dashpot = ASPERITY_R(0.0);
     int k;
@@ -273,15 +294,23 @@ ASPERITY_FN void asperity_contact_forces(
     along[1] = asperity_dot(v, e2);
     d[0] = share * along[0] * dt;
     d[1] = share * along[1] * dt;
-    asperity_update(law->table, radius, law->modulus, &c.state, share * overlap, d, &c.state, &answer, NULL);
+    memset(&moments, 0, sizeof moments);
+    if (turning) {
+        turn[0] = share * asperity_dot(turns, e1) * dt;
+        turn[1] = share * asperity_dot(turns, e2) * dt;
+        turn[2] = share * asperity_dot(turns, n) * dt;
+        asperity_update_turning(law->table, radius, law->modulus, &before->state, turning, share * overlap, d, turn, &c.state, turning_after, &answer, &moments, NULL);
+    } else {
+        asperity_update(law->table, radius, law->modulus, &c.state, share * overlap, d, &c.state, &answer, NULL);
+    }
     if (!asperity_is_finite(answer.f_n) || !asperity_is_finite(answer.f_t[0] + answer.f_t[1])) {
         asperity_no_answer(ASPERITY_NO_NUMBER, before, after, out);
         return;
     }
     /* The law's work is that of h and d: of what the centres move, `share`. */
     c.plastic += answer.plastic / share;
-    c.slip += answer.friction / share;
-    out->stored = answer.stored / share;
+    c.slip += (answer.friction + moments.lost) / share;
+    out->stored = (answer.stored + moments.stored) / share;
     f_n = answer.f_n;
     if (f_n > ASPERITY_R(0.0) && law->damping > ASPERITY_R(0.0)) {
         factor = law->damping * ASPERITY_SQRT(mass * answer.stiffness * share);
@@ -310,15 +339,19 @@ ASPERITY_FN void asperity_contact_forces(
     for (k = 0; k < 3; k++) {
         out->torque_i[k] = -arm_i * turn[k];
         out->torque_j[k] = -arm_j * turn[k];
+        if (turning) {
+            out->torque_i[k] -= moments.m_roll[0] * e1[k] + moments.m_roll[1] * e2[k] + moments.m_twist * n[k];
+            out->torque_j[k] += moments.m_roll[0] * e1[k] + moments.m_roll[1] * e2[k] + moments.m_twist * n[k];
+        }
     }
     *after = c;
 }
 
-/* Two spheres of one material. `after` may be `before`. */
-ASPERITY_FN void asperity_spheres(
+/* Two spheres of one material that twist and roll on each other. What is after may be what is before, and they must be kept or dropped together. */
+ASPERITY_FN void asperity_spheres_turning(
     const asperity_law3d *law, const asperity_body *i, const asperity_body *j, asperity_real dt, const asperity_contact *before, asperity_contact *after,
-    asperity_forces *out) {
-    asperity_real n[3], spin[3], v[3], across_i[3], across_j[3], distance, overlap, arm_i, arm_j, share = law->table->share;
+    const asperity_turning *turning, asperity_turning *turning_after, asperity_forces *out) {
+    asperity_real n[3], spin[3], turns[3], v[3], across_i[3], across_j[3], distance, overlap, arm_i, arm_j, share = law->table->share;
     int k;
     if (law->table->plane) {
         asperity_no_answer(ASPERITY_WRONG_TABLE, before, after, out);
@@ -327,6 +360,7 @@ ASPERITY_FN void asperity_spheres(
     for (k = 0; k < 3; k++) {
         n[k] = i->position[k] - j->position[k];
         spin[k] = ASPERITY_R(0.5) * (i->spin[k] + j->spin[k]);
+        turns[k] = i->spin[k] - j->spin[k];
     }
     distance = ASPERITY_SQRT(asperity_dot(n, n));
     if (!asperity_is_finite(distance) || !(distance > ASPERITY_R(0.0))) {
@@ -346,14 +380,22 @@ ASPERITY_FN void asperity_spheres(
     }
     /* The table's sphere, whose R* is effective_radius; a plane that stands in is that of each sphere by itself. */
     asperity_contact_forces(
-        law, i->radius * j->radius / (i->radius + j->radius) / (share * law->table->effective_radius), asperity_effective_mass(i->mass, j->mass), overlap, n, v, spin, arm_i, arm_j, dt, before, after, out);
+        law, i->radius * j->radius / (i->radius + j->radius) / (share * law->table->effective_radius), asperity_effective_mass(i->mass, j->mass), overlap, n, v, spin, turns, arm_i, arm_j, dt, before, after, turning,
+        turning_after, out);
 }
 
-/* A sphere on a rigid plane; force_j and torque_j are those on the wall, about the point of contact. */
-ASPERITY_FN void asperity_sphere_wall(
-    const asperity_law3d *law, const asperity_body *i, const asperity_wall *wall, asperity_real dt, const asperity_contact *before, asperity_contact *after,
+/* Two spheres of one material. `after` may be `before`. */
+ASPERITY_FN void asperity_spheres(
+    const asperity_law3d *law, const asperity_body *i, const asperity_body *j, asperity_real dt, const asperity_contact *before, asperity_contact *after,
     asperity_forces *out) {
-    asperity_real spin[3], v[3], across_i[3], across_wall[3], from[3], distance, arm;
+    asperity_spheres_turning(law, i, j, dt, before, after, NULL, NULL, out);
+}
+
+/* A sphere that twists and rolls on a rigid plane; force_j and torque_j are those on the wall, about the point of contact. */
+ASPERITY_FN void asperity_sphere_wall_turning(
+    const asperity_law3d *law, const asperity_body *i, const asperity_wall *wall, asperity_real dt, const asperity_contact *before, asperity_contact *after,
+    const asperity_turning *turning, asperity_turning *turning_after, asperity_forces *out) {
+    asperity_real spin[3], turns[3], v[3], across_i[3], across_wall[3], from[3], distance, arm;
     int k;
     if (!law->table->plane) {
         asperity_no_answer(ASPERITY_WRONG_TABLE, before, after, out);
@@ -362,6 +404,7 @@ ASPERITY_FN void asperity_sphere_wall(
     for (k = 0; k < 3; k++) {
         from[k] = i->position[k] - wall->point[k];
         spin[k] = ASPERITY_R(0.5) * (i->spin[k] + wall->spin[k]);
+        turns[k] = i->spin[k] - wall->spin[k];
     }
     distance = asperity_dot(from, wall->normal);
     arm = distance < i->radius ? distance : i->radius;
@@ -373,7 +416,15 @@ ASPERITY_FN void asperity_sphere_wall(
     for (k = 0; k < 3; k++) {
         v[k] = i->velocity[k] - arm * across_i[k] - wall->velocity[k] - across_wall[k];
     }
-    asperity_contact_forces(law, i->radius / law->table->effective_radius, asperity_damped_mass(i->mass), i->radius - distance, wall->normal, v, spin, arm, ASPERITY_R(0.0), dt, before, after, out);
+    asperity_contact_forces(law, i->radius / law->table->effective_radius, asperity_damped_mass(i->mass), i->radius - distance, wall->normal, v, spin, turns, arm, ASPERITY_R(0.0), dt, before, after,
+        turning, turning_after, out);
+}
+
+/* A sphere on a rigid plane. */
+ASPERITY_FN void asperity_sphere_wall(
+    const asperity_law3d *law, const asperity_body *i, const asperity_wall *wall, asperity_real dt, const asperity_contact *before, asperity_contact *after,
+    asperity_forces *out) {
+    asperity_sphere_wall_turning(law, i, wall, dt, before, after, NULL, NULL, out);
 }
 
 #endif

@@ -11,13 +11,17 @@ pub(crate) use table::EngineTable;
 
 use super::Constants;
 use super::table::{LEVELS, PLACES, ROWS};
+use super::turning_constants::{LEVERS, LEVERS_SQUARED, TWIST_FOLLOWS, TWIST_LEVER, TWIST_STIFF, TurningConstants};
 
 const HEADER: &str = include_str!("asperity_contact.h");
+const HEADER_TURNING: &str = include_str!("asperity_turning.h");
 const HEADER_3D: &str = include_str!("asperity_contact3d.h");
 const CHECK: &str = include_str!("asperity_contact_check.c");
 
 /// Name of the update's header, by which others include it.
 pub const HEADER_NAME: &str = "asperity_contact.h";
+/// Name of what twists and rolls a contact.
+pub const TURNING_NAME: &str = "asperity_turning.h";
 
 /// The update, which is the same for every law.
 pub fn header() -> String {
@@ -33,7 +37,45 @@ pub fn header() -> String {
         ("FOLLOWS", constants.follows),
     ];
     let numbers = numbers.map(|(name, value)| (name, format!("{value:?}")));
-    fill(HEADER, [("VERSION", env!("CARGO_PKG_VERSION").to_owned())].into_iter().chain(sizes).chain(numbers))
+    let version = [("VERSION", env!("CARGO_PKG_VERSION").to_owned())];
+    fill(HEADER, version.into_iter().chain(sizes).chain(numbers).chain(of_a_twist()))
+}
+
+/// What the update needs of a twist.
+fn of_a_twist() -> [(&'static str, String); 7] {
+    let constants = TurningConstants::FITTED;
+    let number = |value: f64| format!("{value:?}");
+    [
+        ("LEVERS", LEVERS.map(number).join(", ")),
+        ("TWIST_STIFF", number(TWIST_STIFF)),
+        ("TWIST_LEVER", number(TWIST_LEVER)),
+        ("TWIST_YIELD", number(constants.twist_yield)),
+        ("TWIST_FLOW", number(constants.twist_flow)),
+        ("TWIST_WORN", number(constants.twist_worn)),
+        ("TWIST_MOST", number(constants.twist_most)),
+    ]
+}
+
+/// Its use for a contact that twists and rolls.
+pub fn header_turning() -> String {
+    let constants = TurningConstants::FITTED;
+    let numbers = [
+        ("LEVERS_SQUARED", LEVERS_SQUARED),
+        ("TWIST_FOLLOWS", TWIST_FOLLOWS),
+        ("ROLL_WAY", constants.roll_way),
+        ("ROLL_TRACTION", constants.roll_traction),
+        ("ROLL_LEAVES", constants.roll_leaves),
+        ("ROLL_MOMENT", constants.roll_moment),
+        ("ROLL_FADES", constants.roll_fades),
+        ("ROLL_STIFF", constants.roll_stiff),
+        ("ROLL_SOFTENS", constants.roll_softens),
+        ("ROLL_LOSS_FADES", constants.roll_loss_fades),
+        ("ROLL_LOSS", constants.roll_loss),
+        ("ROLL_SLIP", constants.roll_slip),
+        ("ROLL_PRESS", constants.roll_press),
+        ("ROLL_FLOW", constants.roll_flow),
+    ];
+    fill(HEADER_TURNING, numbers.map(|(name, value)| (name, format!("{value:?}"))))
 }
 
 /// Its use in three dimensions.

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 
 use super::{LawError, LawFile};
 use crate::case::{Case, Friction, Segment, check_room};
-use crate::contact_law::path::drive_in_the_plane;
+use crate::contact_law::path::drive_turning;
 use crate::contact_law::{Centres, ContactParameters};
 use crate::law::data::at_the_limit;
 use crate::memory;
@@ -56,8 +56,8 @@ pub struct Checked {
     /// What F_T and F_N may lack of the limit, root mean square over the greatest size of each;
     /// `None` where a part of the path has no limit.
     pub mesh: Option<[f64; 2]>,
-    /// F_N and F_T along x and y of the update at them.
-    pub law: Vec<[f64; 3]>,
+    /// F_N, F_T along x and y, and the moments about z, x and y of the update at them.
+    pub law: Vec<[f64; 6]>,
     /// Work that the simulation and the update have dissipated at the end.
     pub dissipated: [f64; 2],
     /// Why the simulation did not come to the end of the path.
@@ -83,8 +83,8 @@ impl Errors {
 impl Checked {
     /// Errors of F_T, as a vector, and of F_N.
     pub fn errors(&self) -> [Errors; 2] {
-        let tangential = self.errors_of(tangential, |row, law| (law[1] - row.f_t).hypot(law[2] - row.f_t_y));
-        [tangential, self.errors_of(|row| row.f_n, |row, law| (law[0] - row.f_n).abs())]
+        let tangential = self.errors_of(|row| row.f_n, tangential, |row, law| (law[1] - row.f_t).hypot(law[2] - row.f_t_y));
+        [tangential, self.errors_of(|row| row.f_n, |row| row.f_n, |row, law| (law[0] - row.f_n).abs())]
     }
 
     /// Whether the simulation is good enough to judge by: it came to its end, and its mesh's error
@@ -93,14 +93,24 @@ impl Checked {
         self.failure.is_none() && self.mesh.is_some_and(|mesh| mesh.iter().all(|&error| error <= MOST_MESH_ERROR))
     }
 
-    /// Whether a sphere twists or rolls on the path, of which the law says nothing: its F_T and F_N
-    /// are those of the same path without that.
+    /// Whether a sphere twists or rolls on the path.
     pub fn turns(&self) -> bool {
         self.case.turns()
     }
 
-    /// Greatest moments about the normal and about the axes in the plane, over the greatest
-    /// mu F_N a (F_N a in full stick). The law has none.
+    /// Errors of M_twist, and of M_roll as a vector; of nothing where the sphere does not turn so.
+    pub fn errors_of_moments(&self) -> [Errors; 2] {
+        let twists = self.rows.iter().any(|row| row.twist != 0.0);
+        let rolls = self.rows.iter().any(|row| row.roll_x != 0.0 || row.roll_y != 0.0);
+        let couple = |row: &StepRecord| row.f_n * row.a;
+        let twist = self.errors_of(couple, |row| row.m_twist, |row, law| (law[3] - row.m_twist).abs());
+        let roll = |row: &StepRecord, law: &[f64; 6]| (law[4] - row.m_roll_x).hypot(law[5] - row.m_roll_y);
+        let roll = self.errors_of(couple, |row| row.m_roll_x.hypot(row.m_roll_y), roll);
+        [if twists { twist } else { Errors::default() }, if rolls { roll } else { Errors::default() }]
+    }
+
+    /// Greatest simulated moments about the normal and about the axes in the plane, over the
+    /// greatest mu F_N a (F_N a in full stick).
     pub fn moments(&self) -> [f64; 2] {
         let mu = match self.case.contact.friction {
             Friction::Coefficient(mu) => mu,
@@ -112,13 +122,19 @@ impl Checked {
         if limit > 0.0 { moments.map(|moment| moment / limit) } else { [0.0; 2] }
     }
 
-    /// Whether F_T and F_N are within the aims.
+    /// Whether F_T and F_N are within the aims, and the moments of a sphere that turns.
     pub fn within(&self) -> bool {
-        self.errors().iter().all(Errors::within)
+        self.errors().iter().chain(&self.errors_of_moments()).all(Errors::within)
     }
 
-    fn errors_of(&self, force: fn(&StepRecord) -> f64, error: fn(&StepRecord, &[f64; 3]) -> f64) -> Errors {
-        let peak = peak(&self.rows, force);
+    /// Errors over the greatest size of a force, or a hundredth of the greatest of what is `whole`.
+    fn errors_of(
+        &self,
+        whole: fn(&StepRecord) -> f64,
+        force: fn(&StepRecord) -> f64,
+        error: fn(&StepRecord, &[f64; 6]) -> f64,
+    ) -> Errors {
+        let peak = peak(&self.rows, whole, force);
         if !(peak > 0.0) {
             return Errors::default();
         }
@@ -141,11 +157,15 @@ impl Checked {
     /// The simulated steps with the update's forces beside them, as CSV.
     pub fn csv(&self) -> String {
         let mut text = String::from("segment,h,delta_T,F_N,F_T,law_F_N,law_F_T,delta_T_y,F_T_y,law_F_T_y");
-        text += if self.turns() { ",twist,roll_x,roll_y,M_twist,M_roll_x,M_roll_y\n" } else { "\n" };
+        text += if self.turns() {
+            ",twist,roll_x,roll_y,M_twist,M_roll_x,M_roll_y,law_M_twist,law_M_roll_x,law_M_roll_y\n"
+        } else {
+            "\n"
+        };
         for (row, law) in self.rows.iter().zip(&self.law) {
             // Writing to a String cannot fail.
             let along = [row.h, row.delta_t, row.f_n, row.f_t, law[0], law[1]];
-            let turned = [row.twist, row.roll_x, row.roll_y, row.m_twist, row.m_roll_x, row.m_roll_y];
+            let turned = [row.twist, row.roll_x, row.roll_y, row.m_twist, row.m_roll_x, row.m_roll_y, law[3], law[4], law[5]];
             let turned = if self.turns() { &turned[..] } else { &[] };
             let numbers = [&along[..], &[row.delta_t_y, row.f_t_y, law[2]], turned].concat();
             let numbers: Vec<String> = numbers.into_iter().map(decimal).collect();
@@ -161,9 +181,9 @@ fn tangential(row: &StepRecord) -> f64 {
 }
 
 /// The greatest size of a force. A press alone has no tangential force but that of the tolerance.
-fn peak(rows: &[StepRecord], force: impl Fn(&StepRecord) -> f64) -> f64 {
-    let normal = rows.iter().map(|row| row.f_n).fold(0.0, f64::max);
-    rows.iter().map(|row| force(row).abs()).fold(0.01 * normal, f64::max)
+fn peak(rows: &[StepRecord], whole: impl Fn(&StepRecord) -> f64, force: impl Fn(&StepRecord) -> f64) -> f64 {
+    let whole = rows.iter().map(whole).fold(0.0, f64::max);
+    rows.iter().map(|row| force(row).abs()).fold(0.01 * whole, f64::max)
 }
 
 /// Simulates paths and drives the update that the law exports along them, paths side by side; once
@@ -207,8 +227,9 @@ fn run(path: &Path, parameters: &ContactParameters, stop: &Arc<AtomicBool>) -> R
     }
     let mesh = mesh_errors(&rows, &known);
     let rows = with_limits_across(&at_the_limit(&rows), &rows, &known);
-    let places: Vec<[f64; 3]> = rows.iter().map(|row| [row.h, row.delta_t, row.delta_t_y]).collect();
-    let (law, taken) = drive_in_the_plane(parameters, Centres::of(case), &places, INCREMENTS);
+    let place = |row: &StepRecord| [row.h, row.delta_t, row.delta_t_y, row.twist, row.roll_x, row.roll_y];
+    let places: Vec<[f64; 6]> = rows.iter().map(place).collect();
+    let (law, taken) = drive_turning(parameters, Centres::of(case), &places, INCREMENTS);
     let simulated = rows.last().map_or(0.0, |row| row.work_plastic + row.work_friction);
     Ok(Checked { name: path.name, case: case.clone(), dissipated: [simulated, taken], rows, mesh, law, failure })
 }
@@ -231,8 +252,8 @@ fn mesh_errors(rows: &[StepRecord], known: &[StepLimits]) -> Option<[f64; 2]> {
     };
     let tangential_missing =
         |(row, known): (&StepRecord, &StepLimits)| Some((row.f_t_limit? - row.f_t).hypot(known.f_t_y_limit? - row.f_t_y));
-    let along = share(peak(rows, tangential), rows.iter().zip(known).map(tangential_missing).collect());
-    let normal = share(peak(rows, |row| row.f_n), rows.iter().map(|row| Some(row.f_n_limit? - row.f_n)).collect());
+    let along = share(peak(rows, |row| row.f_n, tangential), rows.iter().zip(known).map(tangential_missing).collect());
+    let normal = share(peak(rows, |row| row.f_n, |row| row.f_n), rows.iter().map(|row| Some(row.f_n_limit? - row.f_n)).collect());
     Some([along?, normal?])
 }
 
@@ -249,8 +270,12 @@ pub fn table(checked: &[Checked]) -> String {
         let mesh = one.mesh.map_or_else(|| "unknown".to_owned(), |[t, n]| format!("{:.1}, {:.1}", 100.0 * t, 100.0 * n));
         let left_out = match (one.turns(), one.counts()) {
             (true, _) => {
-                let [twist, roll] = one.moments();
-                format!(" not counted: M_twist {twist:.2}, M_roll {roll:.2} mu F_N a")
+                let [most_twist, most_roll] = one.moments();
+                let [twist, roll] = one.errors_of_moments().map(|e| [100.0 * e.rms, 100.0 * e.worst]);
+                format!(
+                    " not counted: M_twist {:.1} ({:.1}) of {most_twist:.2}, M_roll {:.1} ({:.1}) of {most_roll:.2} mu F_N a",
+                    twist[0], twist[1], roll[0], roll[1]
+                )
             }
             (false, true) => String::new(),
             (false, false) => " not counted".to_owned(),

@@ -4,7 +4,9 @@ use super::file::{ExportedFile, plain};
 use super::vectors::{SEED, unit_vectors};
 use crate::case::Case;
 use crate::contact_law::SLIDERS;
-use crate::contact_law::export::{EngineTable, HEADER_NAME, check_program, fill, header, header_3d};
+use crate::contact_law::export::{
+    EngineTable, HEADER_NAME, TURNING_NAME, check_program, fill, header, header_3d, header_turning,
+};
 use crate::law::range::OutOfRange;
 use crate::law::table::{Against, is_on_a_flat};
 use crate::law::{LawError, LawFile};
@@ -144,6 +146,7 @@ pub fn engine_files(law: &LawFile, case: Option<&Case>) -> Result<Vec<ExportedFi
         ("law.asperity", table.file()),
         (HEADER_NAME, header()),
         ("asperity_contact3d.h", header_3d()),
+        (TURNING_NAME, header_turning()),
         ("asperity_law_vectors.csv", vectors),
         ("asperity_contact_check.c", check_program("asperity_contact_check.c")),
     ]

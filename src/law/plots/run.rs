@@ -33,7 +33,7 @@ pub fn beside_run(
 /// A point of a law's path as a step of a run: a law knows one point of contact, which slips or
 /// does not.
 pub fn as_step(point: &PathPoint) -> StepRecord {
-    let PathPoint { segment, h, delta_t, delta_t_y, f_n, f_t, f_t_y, slips } = *point;
+    let PathPoint { segment, h, delta_t, delta_t_y, f_n, f_t, f_t_y, slips, .. } = *point;
     let record = StepRecord { segment, h, delta_t, delta_t_y, f_n, f_t, f_t_y, ..StepRecord::default() };
     StepRecord { contact_points: 1, slipping_points: usize::from(slips), ..record }
 }
