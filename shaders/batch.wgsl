@@ -10,6 +10,10 @@ struct Dimensions {
     blocks: u32,            // upper block triangle of the tangent
     own_elements: u32,      // those of the sphere; an opponent that deforms has those after them
     materials: u32,         // sets of parameters: of all cases, then of their opponents, if they have any
+    start_numbers: u32,     // of a case in starts: displacement [3 node + i], states [component][point]
+    trial_numbers: u32,     // of a slot in trials: increment [3 node + i], det F - 1 [point]
+    reserved_0: u32,
+    reserved_1: u32,
 }
 
 // Numbers of a contact point's conditions: residual, force rows, displacement rows.
@@ -18,5 +22,9 @@ const ROWS: u32 = 21u;
 const STRESS: u32 = 9u;
 
 @group(0) @binding(0) var<uniform> dimensions: Dimensions;
+// Slots of a dispatch at the most: what is small for each of them is a block of parameters, so that
+// a kernel has its storage buffers for what is large. WebGPU promises eight of these.
+const MOST_SLOTS: u32 = 1024u;
+
 // For each slot: its case, and that case's geometry.
-@group(0) @binding(1) var<storage, read> active_cases: array<vec2<u32>>;
+@group(0) @binding(1) var<uniform> active_cases: array<vec4<u32>, MOST_SLOTS>;

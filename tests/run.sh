@@ -28,8 +28,8 @@ passed_or_skipped() {
     [ "$1" -eq 77 ] && [ "$2" != 1 ]
 }
 
-# A Vulkan driver that runs on the CPU, for the GPU tests, spirv-val, strace, which kills at chosen
-# system calls, what compiles and runs the exported laws, and a browser. Only where apt-get is there and
+# A Vulkan driver that runs on the CPU, for the GPU tests, Vulkan's headers, spirv-val, strace, which kills
+# at chosen system calls, what compiles and runs the exported laws, and a browser. Only where apt-get is there and
 # something is missing.
 install_packages() {
     local package missing=()
@@ -37,7 +37,7 @@ install_packages() {
     command -v gcc >/dev/null || missing+=(gcc)
     command -v g++ >/dev/null || missing+=(g++)
     command -v python3 >/dev/null || missing+=(python3 python3-venv)
-    for package in libvulkan1 mesa-vulkan-drivers spirv-tools strace chromium; do
+    for package in libvulkan1 libvulkan-dev mesa-vulkan-drivers spirv-tools strace chromium; do
         dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
     done
     [ "${#missing[@]}" -gt 0 ] || return 0
@@ -137,6 +137,14 @@ begin "lammps"
 code=0
 ASPERITY_PROGRAM="$PWD/target/debug/asperity" timeout 600 bash integrations/lammps/run.sh || code=$?
 passed_or_skipped "$code" "${ASPERITY_REQUIRE_LAMMPS:-}"
+
+# SwiftShader beside lavapipe, and lower limits and a lost device on both. ASPERITY_REQUIRE_GPU=1 makes a
+# skip a failure. What it needs is compiled before its time begins.
+begin "drivers"
+cargo test --quiet --no-run --test conformance
+code=0
+timeout 180 bash tests/drivers/run.sh target/debug/asperity || code=$?
+passed_or_skipped "$code" "${ASPERITY_REQUIRE_GPU:-}"
 
 # What the README tells a newcomer, from the installation to a run in LAMMPS.
 begin "first steps"

@@ -6,7 +6,7 @@ mod lint;
 
 use asperity::internals::compute::gpu::kernel::Kernel;
 use asperity::internals::compute::gpu::kernels::KERNELS;
-use asperity::internals::compute::gpu::reflect::Interface;
+use asperity::internals::compute::gpu::reflect::{Binding, Interface};
 use asperity::internals::compute::gpu::shader_sources::{MATH, TENSOR};
 use asperity::internals::compute::gpu::source::{Assembled, Precision, Source};
 use asperity::internals::compute::gpu::validate::{Checked, validate};
@@ -81,6 +81,29 @@ fn every_kernel_has_one_entry_point_of_its_name_and_takes_the_same_in_both_preci
         assert!(listed.len() > 1, "{}", kernel.name);
         assert_eq!((listed, interface.workgroup), (&of_kernel.variables, of_kernel.workgroup), "{} in {precision}", kernel.name);
     });
+}
+
+/// What WebGPU promises of every adapter: eight storage buffers and twelve uniform ones in a kernel,
+/// 256 threads and 16 KiB in a workgroup. Of a uniform buffer Vulkan promises 16 KiB.
+#[test]
+fn no_kernel_takes_more_than_every_adapter_has() {
+    let mut beyond = Vec::new();
+    for kernel in KERNELS {
+        let interface = kernel.interface().unwrap();
+        let names = |uniform: bool| {
+            let found = interface.variables.iter().filter(|variable| (variable.kind == Binding::Uniform) == uniform);
+            found.map(|variable| variable.name.as_str()).collect::<Vec<_>>()
+        };
+        let (arrays, blocks) = (names(false), names(true));
+        if arrays.len() > 8 || blocks.len() > 12 {
+            beyond.push(format!("{} binds {} storage buffers: {}", kernel.name, arrays.len(), arrays.join(", ")));
+        }
+        let sizes = (interface.workgroup, interface.shared_bytes, interface.uniform_bytes);
+        if sizes.0 > 256 || sizes.1 > 16 << 10 || sizes.2 > 16 << 10 {
+            beyond.push(format!("{}: threads, shared bytes and bytes of a block {sizes:?}", kernel.name));
+        }
+    }
+    assert!(beyond.is_empty(), "{}", beyond.join("\n"));
 }
 
 /// Local arrays are what makes drivers compile for minutes and kernels crawl.

@@ -1,9 +1,9 @@
 // The contact conditions of every point that can touch: a thread a point.
 
 @group(0) @binding(2) var<storage, read> weight: array<real>;           // [geometry][point]: c of Alart and Curnier
-@group(0) @binding(3) var<storage, read> on_symmetry_plane: array<u32>; // [point]
+@group(0) @binding(3) var<storage, read> surface: array<u32>;           // [point]: node, and whether on the symmetry plane
 @group(0) @binding(4) var<storage, read> friction: array<real>;         // [case]
-@group(0) @binding(5) var<storage, read> gap_at_start: array<real>;     // [case][point]
+@group(0) @binding(5) var<storage, read> gaps: array<real>;             // [case][at the start of the step, undeformed][point]
 @group(0) @binding(6) var<storage, read> trial: array<real>;            // [slot][force, increment][point]
 @group(0) @binding(7) var<storage, read_write> rows: array<real>;     // [slot][residual, force rows, displacement rows][point]
 @group(0) @binding(8) var<storage, read_write> codes: array<u32>;   // [slot][point]: status + 4, 8, 16 for fixed x, y, z
@@ -23,10 +23,10 @@ fn contact_points(@builtin(global_invocation_id) id: vec3<u32>) {
     let increment = vec3<real>(trial[t + 3u * points], trial[t + 4u * points], trial[t + 5u * points]);
     let point = ContactPoint(
         vec3<real>(trial[t], trial[t + points], trial[t + 2u * points]),
-        gap(gap_at_start[case_index * points + id.x], increment.z),
+        gap(gaps[2u * case_index * points + id.x], increment.z),
         slip(increment),
         weight[active_cases[slot].y * points + id.x],
-        on_symmetry_plane[id.x] != 0u,
+        (surface[id.x] & ON_SYMMETRY_PLANE) != 0u,
     );
     let found = contact_rows(friction[case_index], point);
     store_rows(ROWS * slot * points + id.x, found);

@@ -8,6 +8,9 @@ const SLIP: u32 = 2u;
 // The coefficient that stands for "never slips".
 const FULL_STICK: real = -1.0;
 
+// The bit that a contact point on the symmetry plane has beside the number of its node.
+const ON_SYMMETRY_PLANE: u32 = 0x80000000u;
+
 struct ContactPoint {
     force: vec3<real>,
     gap: real,

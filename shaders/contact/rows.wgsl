@@ -1,5 +1,5 @@
 // The conditions of a contact point as `rows` has them, component by component, `at` being the
-// place of its first; and status and fixed components as one number, as `codes` has them.
+// place of its first; and status and fixed components as one number.
 
 fn store_rows(at: u32, rows: Rows) {
     store(at, 0u, rows.residual);

@@ -1,8 +1,8 @@
 // The state from which every quadrature point starts a step.
 
-@group(0) @binding(2) var<storage, read> history: array<real>;          // [case][component][point]: committed state (7), last flow (7)
+@group(0) @binding(2) var<storage, read> history: array<real>;          // [case][component][point]: committed state, last flow
 @group(0) @binding(3) var<storage, read> anticipated: array<real>;      // [case]: weight of the last flow
-@group(0) @binding(4) var<storage, read_write> state: array<real>;      // [case][component][point], as evaluate_point reads it
+@group(0) @binding(4) var<storage, read_write> starts: array<real>;     // [case]: displacement, states [component][point]
 
 @compute @workgroup_size(64)
 fn hex8_begin_step(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -26,13 +26,13 @@ fn hex8_begin_step(@builtin(global_invocation_id) id: vec3<u32>) {
         ),
         history[h + 13u * points],
     );
-    let start = anticipate(committed, flow, anticipated[case_index]);
-    let s = STATE * case_index * points + id.x;
-    state[s] = start.be.diagonal.x;
-    state[s + points] = start.be.diagonal.y;
-    state[s + 2u * points] = start.be.diagonal.z;
-    state[s + 3u * points] = start.be.shear.x;
-    state[s + 4u * points] = start.be.shear.y;
-    state[s + 5u * points] = start.be.shear.z;
-    state[s + 6u * points] = start.alpha;
+    let begun = anticipate(committed, flow, anticipated[case_index]);
+    let s = case_index * dimensions.start_numbers + 3u * dimensions.nodes + id.x;
+    starts[s] = begun.be.diagonal.x;
+    starts[s + points] = begun.be.diagonal.y;
+    starts[s + 2u * points] = begun.be.diagonal.z;
+    starts[s + 3u * points] = begun.be.shear.x;
+    starts[s + 4u * points] = begun.be.shear.y;
+    starts[s + 5u * points] = begun.be.shear.z;
+    starts[s + 6u * points] = begun.alpha;
 }

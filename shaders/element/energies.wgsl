@@ -1,11 +1,9 @@
 // Elastic energy, plastic work since the start and largest equivalent plastic strain of every
 // element at the end of a step: a thread an element, its points in order.
 
-@group(0) @binding(9) var<storage, read> jacobian: array<real>;         // [slot][point]: det F - 1
-@group(0) @binding(10) var<storage, read> next_history: array<real>;    // [slot][component][point], as hex8_update wrote it
-@group(0) @binding(11) var<storage, read> point_work: array<real>;      // [slot][elastic energy, plastic work][point]
-@group(0) @binding(12) var<storage, read> work_at_start: array<real>;   // [case][element], at the start of the step
-@group(0) @binding(13) var<storage, read_write> energies: array<real>;  // [slot][elastic, plastic, largest alpha][element]
+@group(0) @binding(8) var<storage, read> next_history: array<real>;     // [slot][component][point], as hex8_update wrote it
+@group(0) @binding(9) var<storage, read> work_at_start: array<real>;    // [case][element], at the start of the step
+@group(0) @binding(10) var<storage, read_write> energies: array<real>;  // [slot][elastic, plastic, largest alpha][element]
 
 @compute @workgroup_size(64)
 fn hex8_energies(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -26,11 +24,12 @@ fn hex8_energies(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var q = 0u; q < 8u; q++) {
         let point = 8u * element + q;
         let v = point_volume(geometry, point);
-        change += v * jacobian[slot * points + point];
+        change += v * jacobian_of(slot, point);
         total += v;
-        elastic += point_work[2u * slot * points + point];
-        plastic += point_work[(2u * slot + 1u) * points + point];
-        alpha = max(alpha, next_history[(HISTORY * slot + 6u) * points + point]);
+        let end = NEXT_HISTORY * slot * points + point;
+        elastic += next_history[end + HISTORY * points];
+        plastic += next_history[end + (HISTORY + 1u) * points];
+        alpha = max(alpha, next_history[end + 6u * points]);
     }
     let material = material_of(case_index, element);
     let first = 3u * slot * elements + element;

@@ -3,11 +3,12 @@
 // e + q.
 
 @group(0) @binding(2) var<storage, read> element_nodes: array<u32>;     // [element][corner]: see hanging.wgsl
-// [geometry][3 a + i][element]: reference positions of its corners, relative to the first one
-@group(0) @binding(3) var<storage, read> coordinates: array<real>;
-@group(0) @binding(4) var<storage, read> volume: array<real>;           // [geometry][point]
-@group(0) @binding(5) var<storage, read> committed: array<real>;        // [case][3 node + i]: displacement
-@group(0) @binding(6) var<storage, read> increment: array<real>;        // [slot][3 node + i]
+// [geometry]: reference positions of an element's corners, relative to the first one
+// [3 a + i][element], and volumes [point]
+@group(0) @binding(3) var<storage, read> geometries: array<real>;
+// [case]: what a step starts from; displacement [3 node + i], then b_e_bar - I (6) and alpha
+// [component][point]
+@group(0) @binding(4) var<storage, read> starts: array<real>;
 
 // Where a thread works.
 struct Place {
@@ -50,8 +51,13 @@ fn shape_derivative(a: u32, q: u32) -> vec3<real> {
     return half * vec3<real>(factor.y * factor.z, factor.x * factor.z, factor.x * factor.y);
 }
 
+// Numbers of a geometry: 24 coordinates and eight volumes an element.
+fn geometry_place(geometry: u32) -> u32 {
+    return 32u * geometry * dimensions.elements;
+}
+
 fn point_volume(geometry: u32, point: u32) -> real {
-    return volume[geometry * point_count() + point];
+    return geometries[geometry_place(geometry) + 24u * dimensions.elements + point];
 }
 
 // Inverse by cofactors.
@@ -92,12 +98,12 @@ fn displacement_gradients(at: Place) -> DisplacementGradients {
     var of_increment: mat3x3<real>;
     for (var a = 0u; a < 8u; a++) {
         let node = node_at(at.element, a);
-        let of_case = 3u * (at.case_index * dimensions.nodes + node);
-        let of_slot = 3u * (at.slot * dimensions.nodes + node);
-        let u = vec3<real>(committed[of_case], committed[of_case + 1u], committed[of_case + 2u]);
-        let d = vec3<real>(increment[of_slot], increment[of_slot + 1u], increment[of_slot + 2u]);
-        let of_element = (24u * at.geometry + 3u * a) * stride + at.element;
-        let x = vec3<real>(coordinates[of_element], coordinates[of_element + stride], coordinates[of_element + 2u * stride]);
+        let of_case = at.case_index * dimensions.start_numbers + 3u * node;
+        let of_slot = at.slot * dimensions.trial_numbers + 3u * node;
+        let u = vec3<real>(starts[of_case], starts[of_case + 1u], starts[of_case + 2u]);
+        let d = vec3<real>(trials[of_slot], trials[of_slot + 1u], trials[of_slot + 2u]);
+        let of_element = geometry_place(at.geometry) + 3u * a * stride + at.element;
+        let x = vec3<real>(geometries[of_element], geometries[of_element + stride], geometries[of_element + 2u * stride]);
         var n = shape_derivative(a, at.point % 8u);
         position[0] += n.x * x;
         position[1] += n.y * x;

@@ -1,7 +1,7 @@
 // The stress of every quadrature point, ready to be gathered into nodal forces: V tau (dxi/dx)^T, so
 // that the force on node a is its product with dN_a/dxi, summed over the points around the node.
 
-@group(0) @binding(12) var<storage, read_write> stress: array<real>;    // [slot][3 k + i][point]: component (i, k)
+@group(0) @binding(8) var<storage, read_write> stress: array<real>;    // [slot][3 k + i][point]: component (i, k)
 
 @compute @workgroup_size(64)
 fn hex8_internal_force(@builtin(global_invocation_id) id: vec3<u32>) {

@@ -1,6 +1,6 @@
 // det F - 1 at every quadrature point: the mean dilatation of an element needs those of all eight.
 
-@group(0) @binding(7) var<storage, read_write> jacobian: array<real>;   // [slot][point]
+@group(0) @binding(5) var<storage, read_write> trials: array<real>;     // [slot]: increment [3 node + i], det F - 1 [point]
 
 @compute @workgroup_size(64)
 fn hex8_jacobian(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -14,5 +14,5 @@ fn hex8_jacobian(@builtin(global_invocation_id) id: vec3<u32>) {
         g.committed[1] + g.increment[1],
         g.committed[2] + g.increment[2],
     );
-    jacobian[at.slot * point_count() + at.point] = jacobian_minus_one(h);
+    trials[at.slot * dimensions.trial_numbers + 3u * dimensions.nodes + at.point] = jacobian_minus_one(h);
 }

@@ -1,10 +1,8 @@
 // A quadrature point at a trial displacement: kinematics and the material's response.
 
-@group(0) @binding(9) var<storage, read> state: array<real>;            // [case][component][point]: b_e_bar - I (6), alpha
-@group(0) @binding(10) var<storage, read> jacobian: array<real>;        // [slot][point]: det F - 1
 // [slot]: smallest 32 element + 16 (refused by the material) + 2 point + 1 (not finite) of what has no
 // answer; all ones if there is none.
-@group(0) @binding(11) var<storage, read_write> first_invalid: array<atomic<u32>>;
+@group(0) @binding(6) var<storage, read_write> first_invalid: array<atomic<u32>>;
 
 const REFUSED_BY_KINEMATICS: u32 = 0u;
 const REFUSED_BY_MATERIAL: u32 = 16u;
@@ -30,7 +28,7 @@ fn mean_dilatation(slot: u32, geometry: u32, element: u32) -> vec2<real> {
     for (var q = 0u; q < 8u; q++) {
         let point = 8u * element + q;
         let v = point_volume(geometry, point);
-        change += v * jacobian[slot * point_count() + point];
+        change += v * jacobian_of(slot, point);
         total += v;
     }
     return vec2<real>(change / total, total);
@@ -38,12 +36,12 @@ fn mean_dilatation(slot: u32, geometry: u32, element: u32) -> vec2<real> {
 
 fn load_state(case_index: u32, point: u32) -> PointState {
     let points = point_count();
-    let s = STATE * case_index * points + point;
+    let s = case_index * dimensions.start_numbers + 3u * dimensions.nodes + point;
     let be = Sym(
-        vec3<real>(state[s], state[s + points], state[s + 2u * points]),
-        vec3<real>(state[s + 3u * points], state[s + 4u * points], state[s + 5u * points]),
+        vec3<real>(starts[s], starts[s + points], starts[s + 2u * points]),
+        vec3<real>(starts[s + 3u * points], starts[s + 4u * points], starts[s + 5u * points]),
     );
-    return PointState(be, state[s + 6u * points]);
+    return PointState(be, starts[s + 6u * points]);
 }
 
 fn refuse(at: Place, by: u32, is_not_finite: bool) {
@@ -53,7 +51,7 @@ fn refuse(at: Place, by: u32, is_not_finite: bool) {
 // What the point answers to the trial displacement; where it has no answer, the slot is told.
 fn evaluate_point(at: Place, material: Material) -> PointAnswer {
     var answer: PointAnswer;
-    let j = jacobian[at.slot * point_count() + at.point];
+    let j = jacobian_of(at.slot, at.point);
     if !(j > -1.0) || !is_finite(j) {
         refuse(at, REFUSED_BY_KINEMATICS, !is_finite(j));
         return answer;

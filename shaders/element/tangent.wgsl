@@ -5,7 +5,7 @@
 //   g_a . c . g_b = m/2 (g_a.g_b 1 + g_b (x) g_a) - m/3 g_a (x) g_b
 //                   + (n g_a) (x) (x g_b) + (x g_a) (x) (n g_b).
 
-@group(0) @binding(12) var<storage, read_write> element_blocks: array<real>;    // [slot][element][pair][3 i + j]
+@group(0) @binding(8) var<storage, read_write> element_blocks: array<real>;    // [slot][element][pair][3 i + j]
 
 const POINTS_IN_GROUP: u32 = 64u;
 

@@ -1,9 +1,9 @@
 // The state of every quadrature point at the end of a step and what flowed, with its elastic energy
 // and its plastic work in the step.
 
-@group(0) @binding(12) var<storage, read> history: array<real>;             // [case][component][point]: committed state (7), last flow (7)
-@group(0) @binding(13) var<storage, read_write> next_history: array<real>;  // [slot][component][point], as history
-@group(0) @binding(14) var<storage, read_write> point_work: array<real>;    // [slot][elastic energy, plastic work][point]
+@group(0) @binding(8) var<storage, read> history: array<real>;          // [case][component][point]: committed state, last flow
+// [slot][component][point]: as history, then elastic energy and plastic work
+@group(0) @binding(9) var<storage, read_write> next_history: array<real>;
 
 @compute @workgroup_size(64)
 fn hex8_update(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -31,7 +31,7 @@ fn hex8_update(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let s = done.response.state;
-    let first = HISTORY * at.slot * points + at.point;
+    let first = NEXT_HISTORY * at.slot * points + at.point;
     next_history[first] = s.be.diagonal.x;
     next_history[first + points] = s.be.diagonal.y;
     next_history[first + 2u * points] = s.be.diagonal.z;
@@ -47,7 +47,6 @@ fn hex8_update(@builtin(global_invocation_id) id: vec3<u32>) {
     next_history[first + 12u * points] = done.flow.strain.shear.z;
     next_history[first + 13u * points] = done.flow.alpha;
     let v = point_volume(at.geometry, at.point);
-    let w = 2u * at.slot * points + at.point;
-    point_work[w] = v * elastic_energy_deviatoric(material.elasticity, s.be);
-    point_work[w + points] = v * done.response.plastic_work;
+    next_history[first + HISTORY * points] = v * elastic_energy_deviatoric(material.elasticity, s.be);
+    next_history[first + (HISTORY + 1u) * points] = v * done.response.plastic_work;
 }

@@ -2,10 +2,10 @@
 // of the mesh's list, with the derivatives of the node as each of them names it. One writer and one
 // order for each sum: no atomics, the same bits in every run.
 
-@group(0) @binding(7) var<storage, read> node_start: array<u32>;        // starts of the nodes' lists
-@group(0) @binding(8) var<storage, read> node_entry: array<u32>;        // 8 element + corner; see HAS_HANGING
-@group(0) @binding(9) var<storage, read> stress: array<real>;           // [slot][3 k + i][point]
-@group(0) @binding(10) var<storage, read_write> force: array<real>;     // [slot][3 node + i]
+@group(0) @binding(8) var<storage, read> node_start: array<u32>;        // starts of the nodes' lists
+@group(0) @binding(9) var<storage, read> node_entry: array<u32>;        // 8 element + corner; see HAS_HANGING
+@group(0) @binding(10) var<storage, read> stress: array<real>;          // [slot][3 k + i][point]
+@group(0) @binding(11) var<storage, read_write> force: array<real>;     // [slot][3 node + i]
 
 // Of an entry whose element has corners that hang.
 const HAS_HANGING: u32 = 0x80000000u;

@@ -2,19 +2,13 @@
 // what is recorded of them.
 
 @group(0) @binding(5) var<storage, read> node_info: array<u32>;         // [node]
-// [geometry][point]: of the undeformed body over the plane
-@group(0) @binding(6) var<storage, read> height: array<real>;
-@group(0) @binding(7) var<storage, read> increments: array<real>;       // [case][iterate][3 node + i]
-@group(0) @binding(8) var<storage, read> forces: array<real>;           // [case][iterate][3 node + i]
-// [case][iterate][residual, force rows, displacement rows][point]
-@group(0) @binding(9) var<storage, read> rows: array<real>;
-@group(0) @binding(10) var<storage, read> codes: array<u32>;            // [case][iterate][point]
-@group(0) @binding(11) var<storage, read_write> committed: array<real>; // [case][3 node + i]: displacement
-@group(0) @binding(12) var<storage, read_write> before: array<real>;    // [case][3 node + i]: one step earlier
-@group(0) @binding(13) var<storage, read_write> gap_at_start: array<real>;  // [case][point]
+@group(0) @binding(6) var<storage, read> iterates: array<real>;         // [case][iterate][increment, force][3 node + i]
+@group(0) @binding(7) var<storage, read_write> starts: array<real>;     // [case]: displacement [3 node + i], states
+@group(0) @binding(9) var<storage, read_write> before: array<real>;     // [case][3 node + i]: one step earlier
+@group(0) @binding(10) var<storage, read_write> gaps: array<real>;      // [case][at the start of the step, undeformed][point]
 // [slot][displacement, force of the plane][point]
-@group(0) @binding(14) var<storage, read_write> at_points: array<real>;
-@group(0) @binding(15) var<storage, read_write> status: array<u32>;     // [slot][point]
+@group(0) @binding(11) var<storage, read_write> at_points: array<real>;
+@group(0) @binding(12) var<storage, read_write> status: array<u32>;     // [slot][point]
 
 // Numbers of a point that are recorded.
 const AT_POINT: u32 = 6u;
@@ -26,32 +20,35 @@ fn iterate_commit(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let slot = id.y;
     let case_index = active_cases[slot].x;
-    let n = 3u * dimensions.nodes;
-    let of_case = case_index * n + 3u * id.x;
-    let at = iterate_place_of(case_index, marks[slot].x, n) + 3u * id.x;
+    let of_case = 3u * (case_index * dimensions.nodes + id.x);
+    let of_start = case_index * dimensions.start_numbers + 3u * id.x;
+    let current = marks[slot].x;
+    let at = increment_place(case_index, current, id.x);
     var u = vec3<real>();
     for (var i = 0u; i < 3u; i++) {
-        let start = committed[of_case + i];
-        u[i] = start + increments[at + i];
-        before[of_case + i] = start;
-        committed[of_case + i] = u[i];
+        let at_start = starts[of_start + i];
+        u[i] = at_start + iterates[at + i];
+        before[of_case + i] = at_start;
+        starts[of_start + i] = u[i];
     }
     if node_info[id.x] < FIRST_POINT {
         return;
     }
     let points = dimensions.contact_points;
     let point = node_info[id.x] / FIRST_POINT - 1u;
-    gap_at_start[case_index * points + point] = gap(height[active_cases[slot].y * points + point], u.z);
-    let now = codes[iterate_place_of(case_index, marks[slot].x, points) + point] % 4u;
+    let of_point = 2u * case_index * points + point;
+    gaps[of_point] = gap(gaps[of_point + points], u.z);
+    let now = status_of(case_index, current, point);
     status[slot * points + point] = now;
-    let first = iterate_place_of(case_index, marks[slot].x, ROWS * points) + point;
+    let first = conditions_place(case_index, current, point);
+    let force = force_place(case_index, current, id.x);
     // Along the plane what Coulomb's bound allows, normal to it the internal force.
     var exerted = vec3<real>();
     if now != OPEN {
         exerted = vec3<real>(
-            forces[at] - rows[first],
-            forces[at + 1u] - rows[first + points],
-            max(forces[at + 2u], real(0.0)),
+            iterates[force] - rows[first],
+            iterates[force + 1u] - rows[first + points],
+            max(iterates[force + 2u], real(0.0)),
         );
     }
     for (var i = 0u; i < 3u; i++) {

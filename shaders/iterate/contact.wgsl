@@ -1,17 +1,12 @@
 // The contact conditions of a trial, a thread a point.
 
-@group(0) @binding(5) var<storage, read> contact_node: array<u32>;      // [point]
+@group(0) @binding(5) var<storage, read> surface: array<u32>;           // [point]: node, and whether on the symmetry plane
 @group(0) @binding(6) var<storage, read> weight: array<real>;           // [geometry][point]: c of Alart and Curnier
-@group(0) @binding(7) var<storage, read> on_symmetry_plane: array<u32>; // [point]
-@group(0) @binding(8) var<storage, read> friction: array<real>;         // [case]
-@group(0) @binding(9) var<storage, read> slides: array<u32>;            // [case][point]: without friction in this step
-@group(0) @binding(10) var<storage, read> gap_at_start: array<real>;    // [case][point]
-@group(0) @binding(11) var<storage, read> increments: array<real>;      // [case][iterate][3 node + i]
-@group(0) @binding(12) var<storage, read> forces: array<real>;          // [case][iterate][3 node + i]
-// [case][iterate][residual, force rows, displacement rows][point]
-@group(0) @binding(13) var<storage, read_write> rows: array<real>;
-// [case][iterate][point]: status + 4, 8, 16 for fixed x, y, z
-@group(0) @binding(14) var<storage, read_write> codes: array<u32>;
+@group(0) @binding(7) var<storage, read> friction: array<real>;         // [case]
+@group(0) @binding(8) var<storage, read> let_go: array<u32>;            // [case][point]: SLIDES, CAME_OFF
+@group(0) @binding(9) var<storage, read> gaps: array<real>;             // [case][at the start of the step, undeformed][point]
+@group(0) @binding(10) var<storage, read> iterates: array<real>;        // [case][iterate][increment, force][3 node + i]
+@group(0) @binding(11) var<storage, read_write> rows: array<real>;      // [case][iterate][CONDITIONS][point]
 
 @compute @workgroup_size(64)
 fn iterate_contact(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -21,20 +16,25 @@ fn iterate_contact(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let case_index = active_cases[id.y].x;
     let trial = marks[id.y].y;
-    let at = iterate_place_of(case_index, trial, 3u * dimensions.nodes) + 3u * contact_node[id.x];
-    let increment = vec3<real>(increments[at], increments[at + 1u], increments[at + 2u]);
+    let node = surface[id.x] & ~ON_SYMMETRY_PLANE;
+    let at = increment_place(case_index, trial, node);
+    let force = force_place(case_index, trial, node);
+    let increment = vec3<real>(iterates[at], iterates[at + 1u], iterates[at + 2u]);
+    let c = weight[active_cases[id.y].y * points + id.x];
     let point = ContactPoint(
-        vec3<real>(forces[at], forces[at + 1u], forces[at + 2u]),
-        gap(gap_at_start[case_index * points + id.x], increment.z),
+        vec3<real>(iterates[force], iterates[force + 1u], iterates[force + 2u]),
+        gap(gaps[2u * case_index * points + id.x], increment.z),
         slip(increment),
-        weight[active_cases[id.y].y * points + id.x],
-        on_symmetry_plane[id.x] != 0u,
+        c,
+        (surface[id.x] & ON_SYMMETRY_PLANE) != 0u,
     );
     var coefficient = friction[case_index];
-    if slides[case_index * points + id.x] != 0u {
+    if (let_go[case_index * points + id.x] & SLIDES) != 0u {
         coefficient = 0.0;
     }
     let found = contact_rows(coefficient, point);
-    store_rows(iterate_place_of(case_index, trial, ROWS * points) + id.x, found);
-    codes[iterate_place_of(case_index, trial, points) + id.x] = status_code(found);
+    let first = conditions_place(case_index, trial, id.x);
+    store_rows(first, found);
+    rows[first + CODE * points] = real(status_code(found));
+    rows[first + WEIGHT * points] = c;
 }

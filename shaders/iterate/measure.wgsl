@@ -1,10 +1,10 @@
 // The sums over a trial's nodes that its merit is made of, a thread a node: partial sums by
 // workgroup, in a fixed order.
 
-@group(0) @binding(12) var<storage, read> correction: array<real>;          // [case][3 node + i]
+@group(0) @binding(9) var<storage, read> correction: array<real>;           // [case][3 node + i]
 // [geometry]: of a displacement that is missing
-@group(0) @binding(13) var<storage, read> plate_weight: array<real>;
-@group(0) @binding(14) var<storage, read_write> partial_sums: array<real>;  // [slot][PARTS][workgroup]
+@group(0) @binding(10) var<storage, read> plate_weight: array<real>;
+@group(0) @binding(11) var<storage, read_write> partial_sums: array<real>;  // [slot][PARTS][workgroup]
 
 @compute @workgroup_size(256)
 fn iterate_measure(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {

@@ -13,7 +13,7 @@ fn iterate_press(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let slot = id.y;
     let case_index = active_cases[slot].x;
-    let change = depth_change(slot);
+    let change = number(slot, DEPTH_CHANGE);
     for (var i = 0u; i < 3u; i++) {
         let at = (case_index * nodes + id.x) * 3u + i;
         correction[at] = by_residual[at] + change * real_of_single(response[(3u * case_index + i) * nodes + id.x]);

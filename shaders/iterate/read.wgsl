@@ -1,18 +1,14 @@
 // What the host decides by: sums over a trial's nodes, plate and contact points; a workgroup a slot.
 
-@group(0) @binding(5) var<storage, read> plate: array<u32>;             // number of its nodes, and they
-@group(0) @binding(6) var<storage, read> contact_node: array<u32>;      // [point]
-@group(0) @binding(7) var<storage, read> forces: array<real>;           // [case][iterate][3 node + i]
-// [case][iterate][residual, force rows, displacement rows][point]
-@group(0) @binding(8) var<storage, read> rows: array<real>;
-@group(0) @binding(9) var<storage, read> codes: array<u32>;             // [case][iterate][point]
-@group(0) @binding(10) var<storage, read> slides: array<u32>;           // [case][point]: without friction in this step
-@group(0) @binding(11) var<storage, read> came_off: array<u32>;         // [case][point]: under full stick, in this step
-@group(0) @binding(12) var<storage, read> partial_sums: array<real>;    // [slot][PARTS][workgroup]
-@group(0) @binding(13) var<storage, read_write> largest: array<real>;   // [case][iterate]: of the right-hand side
-@group(0) @binding(14) var<storage, read_write> readings: array<real>;  // [slot][READINGS]
+// [point]: its node, and whether it is on the symmetry plane; then the number of the plate's nodes,
+// and they
+@group(0) @binding(5) var<storage, read> surface: array<u32>;
+@group(0) @binding(6) var<storage, read> iterates: array<real>;         // [case][iterate][increment, force][3 node + i]
+@group(0) @binding(7) var<storage, read> let_go: array<u32>;            // [case][point]: SLIDES, CAME_OFF
+@group(0) @binding(9) var<storage, read> partial_sums: array<real>;     // [slot][PARTS][workgroup]
+@group(0) @binding(10) var<storage, read_write> readings: array<real>;  // [slot][READINGS]
 // [slot]: status changed, come down again, closed, slipping
-@group(0) @binding(15) var<storage, read_write> counts: array<vec4<u32>>;
+@group(0) @binding(11) var<storage, read_write> counts: array<vec4<u32>>;
 
 const READINGS: u32 = 10;
 
@@ -41,32 +37,33 @@ fn iterate_read(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocati
     work = add_up(local, work);
     work_before = add_up(local, work_before);
     most = largest_of(local, most);
-    let of_forces = iterate_place_of(case_index, mark.y, 3u * dimensions.nodes);
+    let points = dimensions.contact_points;
     var plate_force: real = 0.0;
-    for (var i = local; i < plate[0]; i += THREADS) {
-        plate_force -= forces[of_forces + 3u * plate[1u + i] + 2u];
+    for (var i = local; i < surface[points]; i += THREADS) {
+        plate_force -= iterates[force_place(case_index, mark.y, surface[points + 1u + i]) + 2u];
     }
     plate_force = add_up(local, plate_force);
 
-    let points = dimensions.contact_points;
     var scale: real = 0.0;
     var normal: real = 0.0;
     var tangential: real = 0.0;
     var released: real = 0.0;
     var count = vec4<u32>();
     for (var k = local; k < points; k += THREADS) {
-        let code = codes[iterate_place_of(case_index, mark.y, points) + k];
+        let code = code_of(case_index, mark.y, k);
         let status = code % 4u;
-        let status_before = codes[iterate_place_of(case_index, mark.x, points) + k] % 4u;
-        let f_z = forces[of_forces + 3u * contact_node[k] + 2u];
-        let row = iterate_place_of(case_index, mark.y, ROWS * points) + k;
+        let status_before = status_of(case_index, mark.x, k);
+        let force = force_place(case_index, mark.y, surface[k] & ~ON_SYMMETRY_PLANE);
+        let f_z = iterates[force + 2u];
+        let row = conditions_place(case_index, mark.y, k);
         let along = rows[row] * rows[row];
         let across = rows[row + points] * rows[row + points];
-        let sticks = slides[case_index * points + k] == 0u;
+        let bits = let_go[case_index * points + k];
+        let sticks = (bits & SLIDES) == 0u;
         if status != OPEN {
             // Forces at what contact prescribes are in no residual: what is not finite is not to be lost.
             for (var i = 0u; i < 2u; i++) {
-                let along_plane = forces[of_forces + 3u * contact_node[k] + i];
+                let along_plane = iterates[force + i];
                 if !is_finite(along_plane) {
                     scale += along_plane;
                 }
@@ -87,7 +84,7 @@ fn iterate_read(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocati
         if status != status_before {
             count.x += 1u;
         }
-        if sticks && status == STICK && came_off[case_index * points + k] != 0u {
+        if sticks && status == STICK && (bits & CAME_OFF) != 0u {
             count.y += 1u;
         }
     }
@@ -114,9 +111,8 @@ fn iterate_read(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocati
         readings[out + 5u] = work;
         readings[out + 6u] = work_before;
         readings[out + 7u] = released;
-        readings[out + 8u] = depth_change(slot);
+        readings[out + 8u] = number(slot, DEPTH_CHANGE);
         readings[out + 9u] = most;
-        largest[2u * case_index + mark.y] = most;
         counts[slot] = counted;
     }
 }

@@ -3,14 +3,14 @@
 // and numbers of each slot.
 
 // [slot]: current iterate, trial, flags, source of the trial
-@group(0) @binding(2) var<storage, read> marks: array<vec4<u32>>;
-@group(0) @binding(3) var<storage, read> numbers: array<real>;      // [slot][NUMBERS]
+@group(0) @binding(2) var<uniform> marks: array<vec4<u32>, MOST_SLOTS>;
 
+// Of [slot][NUMBERS]: see iterate.wgsl, and depth.wgsl, which writes one of them.
 const NUMBERS: u32 = 9;
 const STEP: u32 = 0;            // step length along the correction
 const DEPTH: u32 = 1;           // h of the current iterate
 const SHEAR: u32 = 2;           // delta_T at the end of the step
-const DEPTH_CHANGE: u32 = 3;    // of h along the whole correction
+const DEPTH_CHANGE: u32 = 3;    // of h along the whole correction; where a force is held, see depth.wgsl
 const HELD_FORCE: u32 = 4;
 const RATIO: u32 = 5;           // of an extrapolation to the last step; of a shift its x
 const SHIFT_Z: u32 = 6;
@@ -19,7 +19,6 @@ const BACK: u32 = 8;            // by which the solutions of the slot's scaled s
 
 const PLACES_PLATE: u32 = 1;
 const HOLDS_FORCE: u32 = 2;
-const RESPONDS: u32 = 4;        // h changes by what is missing over the response to a unit indentation
 const LIFTS: u32 = 8;           // points below the plane are put on it
 const IS_FIRST: u32 = 16;       // of its step
 const LANDS: u32 = 32;          // the last trial was kept, under full stick

@@ -6,12 +6,18 @@
 @group(0) @binding(3) var<storage, read> inverse: array<real>;      // see diagonal.wgsl
 @group(0) @binding(4) var<storage, read> b: array<real>;            // [slot][component][node]
 @group(0) @binding(5) var<storage, read_write> x: array<real>;      // [slot][component][node]
-@group(0) @binding(6) var<storage, read_write> last_step: array<real>;      // [slot][component][node]
-@group(0) @binding(7) var<storage, read_write> left: array<real>;   // [slot][component][node]: residual
-@group(0) @binding(8) var<storage, read> recurrence: array<vec2<real>>;     // shares of the last step and of D^-1 r
-@group(0) @binding(9) var<storage, read> records: array<Record>;
+@group(0) @binding(6) var<storage, read> records: array<Record>;
+// Shares of the last step and of D^-1 r in each step.
+@group(0) @binding(7) var<uniform> recurrence: array<vec4<real>, MOST_STEPS>;
 
 const SMALL_THREADS: u32 = 256u;
+// Unknowns of the largest level that one workgroup smooths, and steps at the most.
+const SMALL_UNKNOWNS: u32 = 1200u;
+const MOST_STEPS: u32 = 8u;
+
+// What is left of the equations, and the last step, as bits of single precision: [component][node].
+var<workgroup> left: array<real, SMALL_UNKNOWNS>;
+var<workgroup> last_step: array<u32, SMALL_UNKNOWNS>;
 
 // What is left of the equations, of x or, at first, of nothing.
 fn leave(slot: u32, local: u32, from_zero: bool) {
@@ -21,9 +27,9 @@ fn leave(slot: u32, local: u32, from_zero: bool) {
         if !from_zero {
             r -= rounded_row_times(slot, i / level.nodes, i % level.nodes);
         }
-        left[first + i] = r;
+        left[i] = r;
     }
-    storageBarrier();
+    workgroupBarrier();
 }
 
 // A step of the polynomial.
@@ -34,14 +40,15 @@ fn smooth_once(slot: u32, local: u32, step: u32, from_zero: bool) {
     for (var i = local; i < 3u * level.nodes; i += SMALL_THREADS) {
         let node = i % level.nodes;
         let row = 18u * slot * level.nodes + 3u * (i - node) + node;
-        var change = shares.y * (inverse[row] * left[first + node]
-            + inverse[row + level.nodes] * left[first + level.nodes + node]
-            + inverse[row + 2u * level.nodes] * left[first + 2u * level.nodes + node]);
+        var change = shares.y * (inverse[row] * left[node]
+            + inverse[row + level.nodes] * left[level.nodes + node]
+            + inverse[row + 2u * level.nodes] * left[2u * level.nodes + node]);
         if shares.x > 0.0 {
-            change += shares.x * last_step[first + i];
+            change += shares.x * real_of_single(last_step[i]);
         }
-        last_step[first + i] = change;
+        last_step[i] = single_bits(change);
         x[first + i] = select(x[first + i], real(0.0), from_zero) + change;
     }
     storageBarrier();
+    workgroupBarrier();
 }

@@ -1,9 +1,7 @@
 // Adds the next level's correction to a small level and smooths it; a workgroup a slot.
 
-@group(0) @binding(10) var<storage, read> row_start: array<u32>;
-@group(0) @binding(11) var<storage, read> row_column: array<u32>;
-@group(0) @binding(12) var<storage, read> row_weight: array<real>;
-@group(0) @binding(13) var<storage, read> coarse: array<real>;      // [slot][component][node of the next level]
+@group(0) @binding(8) var<storage, read> transfer: array<u32>;      // see transfer.wgsl
+@group(0) @binding(9) var<storage, read> coarse: array<real>;       // [slot][component][node of the next level]
 
 @compute @workgroup_size(256)
 fn small_up(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
@@ -15,8 +13,8 @@ fn small_up(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_i
         let node = i % level.nodes;
         let source_at = (3u * slot + i / level.nodes) * level.coarse_nodes;
         var sum: real = 0.0;
-        for (var e = row_start[node]; e < row_start[node + 1u]; e++) {
-            sum += row_weight[e] * coarse[source_at + row_column[e]];
+        for (var e = transfer[node]; e < transfer[node + 1u]; e += 2u) {
+            sum += real_of_single(transfer[e + 1u]) * coarse[source_at + transfer[e]];
         }
         x[3u * slot * level.nodes + i] += sum;
     }

@@ -16,7 +16,7 @@ struct Hardening {
     coefficient: real,       // linear: modulus, power: K, hollomon: sigma_0, voce: sigma_sat
     exponent: real,          // power: n <= 1, hollomon: m, voce: rate
     youngs_modulus: real,    // hollomon
-    first: u32,              // table: its first point in hardening_table
+    first: u32,              // table: place of its first point in materials
     points: u32,             // table: number of points
 }
 
@@ -27,8 +27,9 @@ struct PlasticStep {
     slope: real,
 }
 
-// alpha, sigma and the plastic work up to there, point after point, of all tables.
-@group(0) @binding(8) var<storage, read> hardening_table: array<real>;
+// Parameter p of material m at p * (their number) + m, in the order of load_material, whole numbers
+// as reals; then alpha, sigma and the plastic work up to there, point after point, of all tables.
+@group(0) @binding(7) var<storage, read> materials: array<real>;
 
 // sigma(alpha); REAL_MAX for the elastic law.
 fn flow_stress(h: Hardening, alpha: real) -> real {
@@ -266,15 +267,15 @@ fn voce_step(h: Hardening, flow_stress: real, trial: real, stiffness: real) -> P
 }
 
 fn table_alpha(h: Hardening, i: u32) -> real {
-    return hardening_table[3u * (h.first + i)];
+    return materials[h.first + 3u * i];
 }
 
 fn table_stress(h: Hardening, i: u32) -> real {
-    return hardening_table[3u * (h.first + i) + 1u];
+    return materials[h.first + 3u * i + 1u];
 }
 
 fn table_work(h: Hardening, i: u32) -> real {
-    return hardening_table[3u * (h.first + i) + 2u];
+    return materials[h.first + 3u * i + 2u];
 }
 
 // The last point at or below alpha.

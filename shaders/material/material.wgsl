@@ -18,25 +18,23 @@ struct PointState {
     alpha: real,
 }
 
-// Numbers of a PointState, and with those of its last Flow (multistep.wgsl) behind them.
+// Numbers of a PointState, with those of its last Flow (multistep.wgsl) behind them, and with its
+// energies (update.wgsl) behind these.
 const STATE: u32 = 7u;
 const HISTORY: u32 = 14u;
+const NEXT_HISTORY: u32 = 16u;
 
 struct Material {
     elasticity: Elasticity,
     hardening: Hardening,
 }
 
-// Parameter p of material m at p * materials + m, in the order of load_material; whole numbers are
-// stored as reals.
-@group(0) @binding(7) var<storage, read> material_parameters: array<real>;
-
 const PARAMETERS: u32 = 9u;
 
-fn load_material(index: u32, materials: u32) -> Material {
+fn load_material(index: u32, count: u32) -> Material {
     var p: array<real, PARAMETERS>;
     for (var i = 0u; i < PARAMETERS; i++) {
-        p[i] = material_parameters[i * materials + index];
+        p[i] = materials[i * count + index];
     }
     let hardening = Hardening(u32(p[2]), p[3], p[4], p[5], p[6], u32(p[7]), u32(p[8]));
     return Material(Elasticity(p[0], p[1]), hardening);

@@ -100,13 +100,7 @@ impl Adapter {
             timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
             max_binding: limits.max_storage_buffer_binding_size,
             max_buffer: limits.max_buffer_size,
-            limits: Limits {
-                storage_buffers: limits.max_storage_buffers_per_shader_stage.into(),
-                uniform_buffers: limits.max_uniform_buffers_per_shader_stage.into(),
-                uniform_bytes: limits.max_uniform_buffer_binding_size,
-                threads: limits.max_compute_invocations_per_workgroup.min(limits.max_compute_workgroup_size_x).into(),
-                shared_bytes: limits.max_compute_workgroup_storage_size.into(),
-            },
+            limits: Limits::of(&limits),
             max_workgroups: limits.max_compute_workgroups_per_dimension,
         }
     }
@@ -249,26 +243,26 @@ mod tests {
         }
     }
 
-    /// As `adapter`, with eight arrays a kernel.
-    fn with_eight(name: &str, kind: AdapterKind) -> Adapter {
+    /// As `adapter`, with four arrays a kernel.
+    fn with_four(name: &str, kind: AdapterKind) -> Adapter {
         let mut adapter = adapter(name, kind, true);
-        adapter.limits.storage_buffers = 8;
+        adapter.limits.storage_buffers = 4;
         adapter
     }
 
     #[test]
     fn an_adapter_that_is_too_small_is_passed_over() {
-        let small = [with_eight("small", AdapterKind::Discrete), adapter("Iris Xe", AdapterKind::Integrated, false)];
+        let small = [with_four("small", AdapterKind::Discrete), adapter("Iris Xe", AdapterKind::Integrated, false)];
         assert_eq!(taken(&small, DeviceRequest::Auto, None), Some(1));
         let named = choose(&small, DeviceRequest::Auto, Some("small")).unwrap_err();
         let GpuError::Unfit { adapter: name, what } = &named else { panic!("{named}") };
-        assert!(name == "small" && what.starts_with("needs ") && what.ends_with("the adapter has 8"), "{named}");
-        let software = [with_eight("small", AdapterKind::Discrete), adapter("llvmpipe", AdapterKind::Software, true)];
+        assert!(name == "small" && what.starts_with("needs ") && what.ends_with("the adapter has 4"), "{named}");
+        let software = [with_four("small", AdapterKind::Discrete), adapter("llvmpipe", AdapterKind::Software, true)];
         let choice = choose(&software, DeviceRequest::Auto, None).unwrap();
         assert!(choice.adapter.is_none() && choice.reason.contains("storage buffers in one kernel ("), "{choice:?}");
         assert_eq!(taken(&software, DeviceRequest::Gpu, None), Some(1));
         assert_eq!(choose(&software[..1], DeviceRequest::Gpu, None), Err(named));
-        let only_software = [with_eight("llvmpipe", AdapterKind::Software)];
+        let only_software = [with_four("llvmpipe", AdapterKind::Software)];
         assert!(matches!(choose(&only_software, DeviceRequest::Gpu, None), Err(GpuError::Unfit { .. })));
         assert_eq!(taken(&only_software, DeviceRequest::Auto, None), None);
     }

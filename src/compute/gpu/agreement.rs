@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 use std::mem::offset_of;
 
 use super::dispatch::{outcomes, status_of};
-use super::iterate::arrays::{FIRST_POINT, IS_PLATE, NUMBERS, PARTS, READINGS};
+use super::iterate::arrays::{CAME_OFF, FIRST_POINT, IS_PLATE, NUMBERS, PARTS, READINGS, SLIDES};
 use super::iterate::marks::{flags, number, source};
 use super::kernels::KERNELS;
 use super::layout;
 use super::linear::records::{CONVERGED, FULL, NOT_FINITE, RUNNING, Record};
-use super::linear::sizes::{CHUNK, LevelShape, NODES_IN_GROUP, ROWS_IN_GROUP, THREADS, small_numbers};
+use super::linear::sizes::{CHUNK, LevelShape, MOST_STEPS, NODES_IN_GROUP, ROWS_IN_GROUP, SMALL_NODES, THREADS, small_numbers};
 use super::resident::{FULL_STICK, HANGS_AT, HAS_HANGING, OCTANT_AT, SOME_HANG};
 use super::source::Precision;
 use super::validate::validate;
@@ -47,12 +47,19 @@ fn of_host() -> BTreeMap<&'static str, u32> {
         ("RELATIVE", layout::RELATIVE),
         ("STATE", layout::STATE),
         ("HISTORY", layout::HISTORY),
+        ("NEXT_HISTORY", layout::NEXT_HISTORY),
         ("ANSWER", layout::ANSWER),
         ("TANGENT", layout::TANGENT),
         ("ELEMENT_BLOCKS", layout::ELEMENT_BLOCKS),
         ("STRESS", layout::STRESS),
         ("TRIAL", layout::TRIAL),
         ("ROWS", layout::ROWS),
+        ("CONDITIONS", layout::CONDITIONS),
+        ("CODE", layout::ROWS),
+        ("WEIGHT", layout::ROWS + 1),
+        ("MOST_SLOTS", layout::MOST_SLOTS),
+        ("MOST_STEPS", MOST_STEPS),
+        ("SMALL_UNKNOWNS", 3 * SMALL_NODES),
         ("POINT_ROWS", layout::POINT_ROWS),
         ("AT_POINT", layout::AT_POINT),
         ("CHUNK", CHUNK),
@@ -86,10 +93,12 @@ fn of_host() -> BTreeMap<&'static str, u32> {
         ("HANGS_AT", HANGS_AT),
         ("HAS_HANGING", HAS_HANGING),
         ("IS_PLATE", IS_PLATE),
+        ("ON_SYMMETRY_PLANE", layout::ON_SYMMETRY_PLANE),
+        ("SLIDES", SLIDES),
+        ("CAME_OFF", CAME_OFF),
         ("FIRST_POINT", FIRST_POINT),
         ("PLACES_PLATE", flags::PLACES_PLATE),
         ("HOLDS_FORCE", flags::HOLDS_FORCE),
-        ("RESPONDS", flags::RESPONDS),
         ("LIFTS", flags::LIFTS),
         ("IS_FIRST", flags::IS_FIRST),
         ("LANDS", flags::LANDS),
@@ -190,7 +199,7 @@ fn structs_are_laid_out_alike_on_both_sides() {
     let level = of_host!(LevelShape: nodes, width, coarse_nodes, products, coarse_width, restart, plate_nodes, coarsest_steps,
         smoothing_steps);
     let batch = of_host!(scratch::Dimensions: cases, in_dispatch, nodes, elements, contact_points, blocks, own_elements,
-        materials);
+        materials, start_numbers, trial_numbers);
     let points = of_host!(material::Dimensions: cases, in_dispatch, points);
     let mut seen = [0; 4];
     for (kernel, module) in modules() {

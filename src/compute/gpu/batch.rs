@@ -13,7 +13,7 @@ use super::dispatch::{Dispatch, Evaluation, outcomes};
 use super::error::GpuError;
 use super::iterate::arrays::Kept;
 use super::iterate::kernels::Iterates;
-use super::layout::{HISTORY, ROWS, STATE};
+use super::layout::{HISTORY, NEXT_HISTORY, ROWS, STATE};
 use super::linear::plan::Plan;
 use super::linear::solver::{Answers, Linear, Right};
 use super::pipelines::Recorder;
@@ -156,7 +156,7 @@ impl<R: DeviceReal> Batch<R> {
     pub(super) fn begin(&self, dispatch: &Dispatch) -> Result<(), GpuError> {
         let (context, scratch, sizes) = (&self.context, &self.scratch, self.sizes());
         let resident = &self.groups[dispatch.group].0;
-        let slots: Vec<[u32; 2]> = dispatch.cases.iter().map(|&c| [c as u32, resident.geometry_of[c]]).collect();
+        let slots: Vec<[u32; 4]> = dispatch.cases.iter().map(|&c| [c as u32, resident.geometry_of[c], 0, 0]).collect();
         let dimensions = Dimensions {
             cases: resident.count as u32,
             in_dispatch: slots.len() as u32,
@@ -166,6 +166,9 @@ impl<R: DeviceReal> Batch<R> {
             blocks: sizes.blocks as u32,
             own_elements: sizes.own_elements as u32,
             materials: (sizes.bodies() * resident.count) as u32,
+            start_numbers: sizes.start_numbers() as u32,
+            trial_numbers: sizes.trial_numbers() as u32,
+            reserved: [0; 2],
         };
         context.upload(&scratch.dimensions, &[dimensions])?;
         context.upload_at(&scratch.active, 0, &slots)
@@ -177,7 +180,9 @@ impl<R: DeviceReal> Batch<R> {
         let mut known = self.increments.lock().unwrap_or_else(PoisonError::into_inner);
         if !same_bits(&known, increments) {
             known.clear();
-            self.context.upload_at(&self.scratch.increment, 0, increments)?;
+            for (slot, increment) in increments.chunks(3 * self.sizes().nodes).enumerate() {
+                self.context.upload_at(&self.scratch.trial, slot * self.sizes().trial_numbers(), increment)?;
+            }
             known.extend_from_slice(increments);
         }
         drop(known);
@@ -368,8 +373,9 @@ impl<R: DeviceReal> Batch<R> {
     ) -> Result<(), GpuError> {
         let (scratch, sizes) = (&self.scratch, self.sizes());
         let (history, state, elements) = (HISTORY * sizes.points(), STATE * sizes.points(), sizes.elements);
-        list.copy(&scratch.next_history, slot * history, &resident.history, case * history, history)?;
-        list.copy(&scratch.next_history, slot * history, &resident.state, case * state, state)?;
+        let (from, start) = (slot * NEXT_HISTORY * sizes.points(), case * sizes.start_numbers() + 3 * sizes.nodes);
+        list.copy(&scratch.next_history, from, &resident.history, case * history, history)?;
+        list.copy(&scratch.next_history, from, &resident.start, start, state)?;
         list.copy(&scratch.energies, (3 * slot + 1) * elements, &resident.plastic_work, case * elements, elements)
     }
 
@@ -410,9 +416,9 @@ impl<R: DeviceReal> Batch<R> {
     /// The device's fault.
     pub fn restore(&self, case: usize, model: &CaseModel, displacement: &[f64], state: &[R], work: &[R]) -> Result<(), GpuError> {
         let (resident, index) = self.resident(case)?;
-        let points = self.sizes().points();
+        let (points, start) = (self.sizes().points(), index * self.sizes().start_numbers() + 3 * self.sizes().nodes);
         self.context.upload_at(&resident.history, index * HISTORY * points, state)?;
-        self.context.upload_at(&resident.state, index * STATE * points, &state[..STATE * points])?;
+        self.context.upload_at(&resident.start, start, &state[..STATE * points])?;
         self.context.upload_at(&resident.plastic_work, index * self.sizes().elements, work)?;
         resident.set_displacement(&self.context, self.sizes(), index, &model.mesh, displacement)
     }

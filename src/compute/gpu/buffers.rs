@@ -175,6 +175,32 @@ impl<T> StorageBuffer<T> {
             array: Array { bytes: (self.len * size_of::<T>()) as u64, extent: self.extent },
         }
     }
+
+    /// The same for a kernel that touches no more than so many numbers of each of its parts.
+    pub fn partly(&self, numbers: usize) -> Partly<'_, T> {
+        Partly { array: self, numbers }
+    }
+}
+
+/// An array of which a kernel touches some numbers of each part: it is bound whole, and they count.
+#[derive(Clone, Copy, Debug)]
+pub struct Partly<'a, T> {
+    array: &'a StorageBuffer<T>,
+    numbers: usize,
+}
+
+impl<'a, T> Partly<'a, T> {
+    /// As [`StorageBuffer::named`].
+    pub fn named(&self, name: &'static str) -> Argument<'a> {
+        let of_parts = |parts: u64| parts * (self.numbers * size_of::<T>()) as u64;
+        let mut argument = self.array.named(name);
+        argument.array.bytes = match self.array.extent {
+            Extent::Little => 0,
+            Extent::Whole => of_parts(1),
+            Extent::Each(parts) => of_parts(parts),
+        };
+        argument
+    }
 }
 
 /// Bytes that an array takes: an empty binding is invalid, 16 bytes stand for it.
@@ -258,7 +284,15 @@ impl GpuContext {
     /// # Errors
     /// As [`GpuContext::zeros`].
     pub fn block<T: Pod>(&self, what: &str) -> Result<StorageBuffer<T>, GpuError> {
-        self.allocate(what, 1, wgpu::BufferUsages::UNIFORM)
+        self.blocks(what, 1)
+    }
+
+    /// A block of parameters that is a list of so many.
+    ///
+    /// # Errors
+    /// As [`GpuContext::zeros`].
+    pub fn blocks<T: Pod>(&self, what: &str, len: usize) -> Result<StorageBuffer<T>, GpuError> {
+        self.allocate(what, len, wgpu::BufferUsages::UNIFORM)
     }
 
     /// Overwrites the array.

@@ -7,6 +7,7 @@ use super::error::GpuError;
 use super::health::DeviceHealth;
 use super::memory::{MemoryBudget, Staging};
 use super::meter::Meter;
+use super::needs;
 use super::pace::Pace;
 use super::profile::Profiling;
 use super::source::Precision;
@@ -106,9 +107,7 @@ impl GpuContext {
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("asperity"),
             required_features: adapter.features() & wanted,
-            // The defaults allow 8 storage buffers a kernel and 128 MiB a binding, whatever the
-            // device can do.
-            required_limits: adapter.limits(),
+            required_limits: needs::asked_for(&adapter.limits()),
             ..Default::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))

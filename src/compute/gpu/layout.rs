@@ -3,7 +3,7 @@
 
 use crate::element::hex8::{NODES, PAIRS};
 
-/// Parameters of a material in `material_parameters`.
+/// Parameters of a material.
 pub const PARAMETERS: usize = 9;
 /// Components of f - I, row by row.
 pub const RELATIVE: usize = 9;
@@ -11,6 +11,8 @@ pub const RELATIVE: usize = 9;
 pub const STATE: usize = 7;
 /// Components of a point's committed state and of what flowed in its last step.
 pub const HISTORY: usize = 2 * STATE;
+/// The same at the end of a step, with the point's elastic energy and plastic work.
+pub const NEXT_HISTORY: usize = HISTORY + 2;
 /// Components of an answer: deviatoric stress (6), b_e_bar - I (6), alpha, mu_bar, norm, normal
 /// (6), beta_1, beta_3, beta_4, delta_gamma, plastic work, U', U'', U, W.
 pub const ANSWER: usize = 30;
@@ -26,7 +28,16 @@ pub const STRESS: usize = 9;
 pub const TRIAL: usize = 6;
 /// Numbers of a contact point's conditions: residual, force rows, displacement rows.
 pub const ROWS: usize = 3 + 2 * 9;
+/// Numbers of a contact point's conditions that an iterate keeps: those, status, weight.
+pub const CONDITIONS: usize = ROWS + 2;
 /// Numbers that a contact point has in the linear solver: whether it slides, its rows.
 pub const POINT_ROWS: usize = 1 + 2 * 9;
 /// Numbers of a contact point that are recorded: displacement, force.
 pub const AT_POINT: usize = 6;
+/// Slots of a dispatch at the most: what is small for each of them is a block of parameters of this
+/// length, with 16 bytes a slot.
+pub const MOST_SLOTS: usize = 1024;
+/// Bytes of the blocks of parameters by slot: cases, marks.
+pub const BLOCKS_OF_SLOTS: u64 = 2 * (MOST_SLOTS * size_of::<[u32; 4]>()) as u64;
+/// A contact point's node, where that lies on the symmetry plane.
+pub const ON_SYMMETRY_PLANE: u32 = 1 << 31;

@@ -37,16 +37,15 @@ impl PointStatus {
     }
 }
 
-/// Materials as kernels read them: `material_parameters` (parameter p of material m at `p *
-/// materials + m`) and `hardening_table` (alpha, sigma, plastic work of the points of all tables).
-pub fn flatten<R: Real>(materials: &[Material<R>]) -> (Vec<R>, Vec<R>) {
+/// Materials as kernels read them: parameter p of material m at `p * materials + m`, and after them
+/// alpha, sigma, plastic work of the points of all tables.
+pub fn flatten<R: Real>(materials: &[Material<R>]) -> Vec<R> {
     let cases = materials.len();
-    let mut parameters = vec![R::ZERO; PARAMETERS * cases];
-    let mut table = Vec::new();
+    let mut numbers = vec![R::ZERO; PARAMETERS * cases];
     for (case, material) in materials.iter().enumerate() {
         let zero = R::ZERO;
         let mut points = 0;
-        let first = table.len() / 3;
+        let first = numbers.len();
         let (yield_stress, coefficient, exponent, youngs_modulus) = match &material.hardening {
             Hardening::Elastic => (zero, zero, zero, zero),
             Hardening::Ideal { yield_stress } => (*yield_stress, zero, zero, zero),
@@ -58,7 +57,7 @@ pub fn flatten<R: Real>(materials: &[Material<R>]) -> (Vec<R>, Vec<R>) {
             Hardening::Voce { yield_stress, saturation_stress, rate } => (*yield_stress, *saturation_stress, *rate, zero),
             Hardening::Table { points: rows } => {
                 points = rows.len();
-                table.extend(rows.iter().flatten());
+                numbers.extend(rows.iter().flatten());
                 (rows.first().map_or(zero, |row| row[1]), zero, zero, zero)
             }
         };
@@ -76,10 +75,10 @@ pub fn flatten<R: Real>(materials: &[Material<R>]) -> (Vec<R>, Vec<R>) {
             whole(points),
         ];
         for (p, value) in row.into_iter().enumerate() {
-            parameters[p * cases + case] = value;
+            numbers[p * cases + case] = value;
         }
     }
-    (parameters, table)
+    numbers
 }
 
 /// The block that `return_mapping.wgsl` calls Dimensions.
@@ -127,9 +126,7 @@ impl<R: DeviceReal> ReturnMapping<R> {
     /// device's fault.
     pub fn new(context: &GpuContext, materials: &[Material<R>], points: usize) -> Result<Self, GpuError> {
         let cases = materials.len();
-        let (parameters, table) = flatten(materials);
-        let parameters = context.array("material parameters", &parameters)?;
-        let table = context.array("hardening table", &table)?;
+        let materials = context.array("materials", &flatten(materials))?;
         let of_cases =
             |what: &str, components: usize| Ok::<_, GpuError>(context.zeros(what, cases * components * points)?.each(cases));
         let relative = of_cases("relative displacement gradient", RELATIVE)?;
@@ -147,8 +144,7 @@ impl<R: DeviceReal> ReturnMapping<R> {
             answer,
             tangent,
             point_status: status,
-            material_parameters: parameters,
-            hardening_table: table,
+            materials,
         };
         let bound = context.bind(&RETURN_MAPPING, R::PRECISION, &arguments)?;
         Ok(Self { cases, points, relative, committed, answer, tangent, status, active, dimensions, bound })
@@ -246,11 +242,11 @@ mod tests {
         let table = |points: &[[f64; 2]]| Hardening::<f64>::table(points).unwrap();
         let laws = [table(&[[0.0, 1.0], [1.0, 3.0]]), Hardening::voce(2.0, 4.0, 6.0).unwrap(), table(&[[0.0, 8.0]])];
         let materials = laws.map(|hardening| Material { elasticity, hardening });
-        let (parameters, points) = flatten(&materials);
-        let column = |case: usize| (0..PARAMETERS).map(|p| parameters[p * 3 + case]).collect::<Vec<_>>();
-        assert_eq!(column(0), [5.0, 7.0, 6.0, 1.0, 0.0, 0.0, 0.0, 0.0, 2.0]);
-        assert_eq!(column(1), [5.0, 7.0, 5.0, 2.0, 4.0, 6.0, 0.0, 2.0, 0.0]);
-        assert_eq!(column(2), [5.0, 7.0, 6.0, 8.0, 0.0, 0.0, 0.0, 2.0, 1.0]);
-        assert_eq!(points, [0.0, 1.0, 0.0, 1.0, 3.0, 2.0, 0.0, 8.0, 0.0]);
+        let numbers = flatten(&materials);
+        let column = |case: usize| (0..PARAMETERS).map(|p| numbers[p * 3 + case]).collect::<Vec<_>>();
+        assert_eq!(column(0), [5.0, 7.0, 6.0, 1.0, 0.0, 0.0, 0.0, 27.0, 2.0]);
+        assert_eq!(column(1), [5.0, 7.0, 5.0, 2.0, 4.0, 6.0, 0.0, 33.0, 0.0]);
+        assert_eq!(column(2), [5.0, 7.0, 6.0, 8.0, 0.0, 0.0, 0.0, 33.0, 1.0]);
+        assert_eq!(numbers[3 * PARAMETERS..], [0.0, 1.0, 0.0, 1.0, 3.0, 2.0, 0.0, 8.0, 0.0]);
     }
 }

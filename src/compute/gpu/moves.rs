@@ -7,7 +7,6 @@
 
 use super::arguments::Array;
 use super::kernel::Kernel;
-use super::layout::HISTORY;
 use super::reflect::Variable;
 
 /// What is not seen from a kernel's bindings.
@@ -27,8 +26,8 @@ enum But {
 
 /// Kernels, their arguments, and what there is to know of these.
 const BUT: &[(&str, &[&str], But)] = &[
-    // The largest alpha alone.
-    ("hex8_energies", &["next_history"], But::OneOf(HISTORY as u64)),
+    // It reads the increments and writes the Jacobians.
+    ("hex8_jacobian", &["trials"], But::Once),
     // Of elements with corners that hang.
     ("gather_node_force", &["element_nodes"], But::Left),
     // The committed state, and not its last flow.
@@ -49,24 +48,24 @@ const BUT: &[(&str, &[&str], But)] = &[
     ("smooth_step", &["last_step"], But::Once),
     // Levels that one workgroup smooths stay in its caches.
     ("solve_coarsest", &["x", "last_step"], But::Once),
-    ("small_down", &["x", "last_step", "left"], But::Once),
-    ("small_up", &["last_step", "left"], But::Once),
+    ("small_down", &["x"], But::Once),
     ("krylov_dots", &["basis"], But::PerVector),
     ("krylov_orthogonalise", &["basis"], But::PerVector),
     ("krylov_combine", &["preconditioned"], But::PerVector),
     // What a trial begins with is one of these.
-    ("iterate_place", &["committed", "before", "correction", "gap_at_start"], But::Left),
-    ("iterate_place", &["increments"], But::Once),
+    ("iterate_place", &["starts", "before", "correction", "gaps"], But::Left),
+    ("iterate_place", &["iterates"], But::Once),
     // Of prescribed nodes and contact points.
-    ("iterate_contact", &["increments", "forces"], But::Left),
-    ("iterate_measure", &["committed", "weight", "increments", "rows"], But::Left),
-    ("iterate_measure", &["forces"], But::Twice),
-    ("iterate_system", &["committed", "weight", "increments"], But::Left),
-    ("iterate_expand", &["committed", "weight", "increments", "rows"], But::Left),
+    ("iterate_contact", &["iterates"], But::Left),
+    ("iterate_measure", &["starts", "rows"], But::Left),
+    // The forces of both.
+    ("iterate_measure", &["iterates"], But::Twice),
+    ("iterate_system", &["starts"], But::Left),
+    ("iterate_expand", &["starts", "rows"], But::Left),
     ("iterate_expand", &["correction"], But::Once),
     // From the second iteration of a step on.
     ("iterate_unit", &["response"], But::Left),
-    ("iterate_commit", &["forces", "rows"], But::Left),
+    ("iterate_commit", &["rows"], But::Left),
 ];
 
 /// Kernels that touch single nodes or points, or a number of entries that only the device knows:
@@ -114,7 +113,7 @@ mod tests {
     use super::super::kernels::KERNELS;
     use super::super::linear::sources::{KRYLOV_DOTS, SMOOTH_STEP};
     use super::super::reflect::Binding;
-    use super::super::shader_sources::HEX8_JACOBIAN;
+    use super::super::shader_sources::{GATHER_NODE_FORCE, HEX8_JACOBIAN};
     use super::*;
 
     fn variable(name: &str, reads: bool, writes: bool) -> Variable {
@@ -144,10 +143,11 @@ mod tests {
             let found = kernel.interface().unwrap().variables.iter().find(|variable| variable.name == name).cloned();
             found.map(|variable| (variable.reads, variable.writes))
         };
-        // Volumes are declared for every kernel of the element, and not read by this one.
+        // Declared for all who evaluate elements, and not read by those who gather.
+        assert_eq!(of(&GATHER_NODE_FORCE, "geometries"), None);
         assert_eq!(
-            ["volume", "increment", "jacobian"].map(|name| of(&HEX8_JACOBIAN, name)),
-            [None, Some((true, false)), Some((false, true))]
+            ["element_nodes", "starts", "trials"].map(|name| of(&HEX8_JACOBIAN, name)),
+            [Some((true, false)), Some((true, false)), Some((true, true))]
         );
         assert_eq!(["last_step", "next"].map(|name| of(&SMOOTH_STEP, name)), [Some((true, true)), Some((false, true))]);
 

@@ -6,7 +6,7 @@ use super::block_plan::BlockPlan;
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
-use super::layout::{COORDINATES, HISTORY, STATE};
+use super::layout::{COORDINATES, HISTORY, ON_SYMMETRY_PLANE, PARAMETERS, STATE};
 use super::material::flatten;
 use crate::compute::{CaseModel, ComputeError};
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction};
@@ -52,6 +52,22 @@ impl Sizes {
         QUADRATURE_POINTS * self.elements
     }
 
+    /// Numbers of a case in `start`: displacement `[3 node + i]`, states `[component][point]`.
+    pub fn start_numbers(&self) -> usize {
+        3 * self.nodes + STATE * self.points()
+    }
+
+    /// Numbers of a slot in `trial`: increment `[3 node + i]`, det F - 1 `[point]`.
+    pub fn trial_numbers(&self) -> usize {
+        3 * self.nodes + self.points()
+    }
+
+    /// Numbers of a geometry: reference positions of the corners `[3 a + i][element]`, volumes
+    /// `[point]`.
+    pub fn geometry_numbers(&self) -> usize {
+        COORDINATES * self.elements + self.points()
+    }
+
     /// Bodies that deform.
     pub fn bodies(&self) -> usize {
         if self.own_elements < self.elements { 2 } else { 1 }
@@ -59,13 +75,10 @@ impl Sizes {
 
     /// Bytes a case keeps on the device, with its own geometry: the widest array, and all together.
     pub fn resident_bytes<R>(&self) -> (u64, u64) {
-        let widest = HISTORY * self.points();
-        let all = widest
-            + (1 + STATE) * self.points()
-            + (COORDINATES + 1) * self.elements
-            + 3 * self.nodes
-            + 2 * self.contact_points
-            + MATERIAL_ROOM * self.bodies();
+        let (history, start) = (HISTORY * self.points(), self.start_numbers());
+        let widest = history.max(start);
+        let all =
+            history + start + self.geometry_numbers() + self.elements + 3 * self.contact_points + MATERIAL_ROOM * self.bodies();
         ((widest * size_of::<R>()) as u64, (all * size_of::<R>()) as u64)
     }
 }
@@ -85,10 +98,9 @@ pub struct Connectivity {
     pub block_start: StorageBuffer<u32>,
     /// The lists.
     pub block_entry: StorageBuffer<u32>,
-    /// Node of each contact point.
-    pub contact_node: StorageBuffer<u32>,
-    /// Whether each contact point lies on the symmetry plane.
-    pub on_symmetry_plane: StorageBuffer<u32>,
+    /// Node of each contact point, and whether that lies on the symmetry plane; then the number of
+    /// the plate's nodes, and they.
+    pub surface: StorageBuffer<u32>,
 }
 
 impl Connectivity {
@@ -99,8 +111,10 @@ impl Connectivity {
     pub fn new(context: &GpuContext, mesh: &Mesh, plan: &BlockPlan) -> Result<Self, GpuError> {
         let [nodes, around] = with_hanging(mesh)?;
         let mut on_plane = vec![0u32; mesh.nodes.len()];
-        mesh.symmetry_nodes.iter().for_each(|&n| on_plane[n as usize] = 1);
-        let on_plane: Vec<u32> = mesh.contact_nodes.iter().map(|&n| on_plane[n as usize]).collect();
+        mesh.symmetry_nodes.iter().for_each(|&n| on_plane[n as usize] = ON_SYMMETRY_PLANE);
+        let of_point = |&n: &u32| n | on_plane[n as usize];
+        let plate = std::iter::once(mesh.plate_nodes.len() as u32).chain(mesh.plate_nodes.iter().copied());
+        let surface: Vec<u32> = mesh.contact_nodes.iter().map(of_point).chain(plate).collect();
         Ok(Self {
             sizes: Sizes {
                 nodes: mesh.nodes.len(),
@@ -114,8 +128,7 @@ impl Connectivity {
             node_entry: context.array("elements around nodes", &around)?.whole(),
             block_start: context.array("blocks of the tangent: starts", &plan.start)?.whole(),
             block_entry: context.array("blocks of the tangent", &plan.entry)?.whole(),
-            contact_node: context.array("contact nodes", &mesh.contact_nodes)?.whole(),
-            on_symmetry_plane: context.array("contact points on the symmetry plane", &on_plane)?.whole(),
+            surface: context.array("contact nodes and plate nodes", &surface)?.whole(),
         })
     }
 }
@@ -130,21 +143,20 @@ pub struct Resident<R> {
     pub count: usize,
     /// Index of each case's geometry among those of the group.
     pub geometry_of: Vec<u32>,
-    pub(super) coordinates: StorageBuffer<R>,
-    pub(super) volume: StorageBuffer<R>,
-    pub(super) committed: StorageBuffer<R>,
-    pub(super) parameters: StorageBuffer<R>,
-    pub(super) table: StorageBuffer<R>,
-    /// The states from which the present step starts.
-    pub(super) state: StorageBuffer<R>,
+    pub(super) geometries: StorageBuffer<R>,
+    /// Parameters and hardening tables.
+    pub(super) materials: StorageBuffer<R>,
+    /// What the present step starts from: committed displacements, and states.
+    pub(super) start: StorageBuffer<R>,
     /// Committed states and last flows.
     pub(super) history: StorageBuffer<R>,
-    /// Weight of the last flow in `state`, a case.
+    /// Weight of the last flow in the states of `start`, a case.
     pub(super) anticipated: StorageBuffer<R>,
     pub(super) plastic_work: StorageBuffer<R>,
     pub(super) weight: StorageBuffer<R>,
     pub(super) friction: StorageBuffer<R>,
-    pub(super) gap: StorageBuffer<R>,
+    /// Heights over the plane at the start of the step, and of the undeformed body.
+    pub(super) gaps: StorageBuffer<R>,
 }
 
 impl<R: DeviceReal> Resident<R> {
@@ -166,32 +178,30 @@ impl<R: DeviceReal> Resident<R> {
             })
             .collect();
         let points = sizes.points();
-        let (coordinates, volume) = send_geometry::<R>(context, sizes, &meshes)?;
+        let geometries = send_geometry::<R>(context, sizes, &meshes)?;
         let weight = context.zeros("contact weights", meshes.len() * sizes.contact_points)?.each(meshes.len());
         for (index, mesh) in meshes.iter().enumerate() {
             context.upload_at(&weight, index * sizes.contact_points, &contact_weights::<R>(mesh))?;
         }
-        let (parameters, table) = send_materials::<R>(context, sizes, models)?;
+        let materials = send_materials::<R>(context, sizes, models)?;
         let friction: Vec<R> = models.iter().map(|m| friction(m.friction)).collect();
         let resident = Self {
             first,
             count,
             geometry_of,
-            coordinates,
-            volume,
+            geometries,
             weight,
-            committed: context.zeros("committed displacements", count * 3 * sizes.nodes)?.each(count),
-            parameters,
-            table,
-            state: context.zeros("states at the start", count * STATE * points)?.each(count),
+            materials,
+            start: context.zeros("displacements and states at the start", count * sizes.start_numbers())?.each(count),
             history: context.zeros("committed states", count * HISTORY * points)?.each(count),
             anticipated: context.zeros("weights of the last flow", count)?,
             plastic_work: context.zeros("plastic work", count * sizes.elements)?.each(count),
             friction: context.array("coefficients of friction", &friction)?,
-            gap: context.zeros("gaps at the start of the step", count * sizes.contact_points)?.each(count),
+            gaps: context.zeros("gaps at the start of the step, heights", count * 2 * sizes.contact_points)?.each(count),
         };
         let still = vec![0.0; 3 * sizes.nodes];
         for (index, model) in models.iter().enumerate() {
+            resident.set_heights(context, sizes, index, &model.mesh)?;
             resident.set_displacement(context, sizes, index, &model.mesh, &still)?;
         }
         Ok(resident)
@@ -213,20 +223,20 @@ impl<R: DeviceReal> Resident<R> {
     ) -> Result<Option<usize>, ComputeError> {
         let (mesh, points) = (&models[index].mesh, sizes.points());
         let Some(geometry) = self.free_geometry(index, sizes) else { return Ok(None) };
-        let (positions, volumes) = flatten_geometry::<R>(mesh)?;
-        if !replace_materials(context, sizes, models, (&self.parameters, &self.table))? {
+        let numbers = flatten_geometry::<R>(mesh)?;
+        if !replace_materials(context, sizes, models, &self.materials)? {
             return Ok(None);
         }
-        context.upload_at(&self.coordinates, geometry * COORDINATES * sizes.elements, &positions)?;
-        context.upload_at(&self.volume, geometry * points, &volumes)?;
+        context.upload_at(&self.geometries, geometry * sizes.geometry_numbers(), &numbers)?;
         context.upload_at(&self.weight, geometry * sizes.contact_points, &contact_weights::<R>(mesh))?;
         context.upload_at(&self.friction, index, &[friction::<R>(models[index].friction)])?;
         let mut list = context.record();
-        list.clear(&self.state, index * STATE * points, STATE * points)?;
+        list.clear(&self.start, index * sizes.start_numbers() + 3 * sizes.nodes, STATE * points)?;
         list.clear(&self.history, index * HISTORY * points, HISTORY * points)?;
         list.clear(&self.anticipated, index, 1)?;
         list.clear(&self.plastic_work, index * sizes.elements, sizes.elements)?;
         list.submit()?;
+        self.set_heights(context, sizes, index, mesh)?;
         self.set_displacement(context, sizes, index, mesh, &vec![0.0; 3 * sizes.nodes])?;
         self.geometry_of[index] = geometry as u32;
         Ok(Some(geometry))
@@ -235,7 +245,7 @@ impl<R: DeviceReal> Resident<R> {
     /// The geometry of a case, if no other case has it too, or one that no case has.
     fn free_geometry(&self, index: usize, sizes: Sizes) -> Option<usize> {
         let others = |geometry: u32| self.geometry_of.iter().enumerate().all(|(case, &g)| case == index || g != geometry);
-        let all = self.volume.len() / sizes.points().max(1);
+        let all = self.geometries.len() / sizes.geometry_numbers().max(1);
         let own = self.geometry_of[index];
         std::iter::once(own).chain(0..all as u32).find(|&geometry| others(geometry)).map(|geometry| geometry as usize)
     }
@@ -249,7 +259,7 @@ impl<R: DeviceReal> Resident<R> {
         context: &GpuContext,
         sizes: Sizes,
         models: &[CaseModel],
-    ) -> Result<(StorageBuffer<T>, StorageBuffer<T>), ComputeError> {
+    ) -> Result<StorageBuffer<T>, ComputeError> {
         let count = self.geometry_of.iter().max().map_or(0, |last| *last + 1);
         let first_with = |geometry: u32| self.geometry_of.iter().position(|&g| g == geometry);
         let meshes: Vec<&Arc<Mesh>> = (0..count).filter_map(first_with).map(|case| &models[self.first + case].mesh).collect();
@@ -270,13 +280,19 @@ impl<R: DeviceReal> Resident<R> {
         displacement: &[f64],
     ) -> Result<(), GpuError> {
         let rounded: Vec<R> = displacement.iter().map(|&u| R::of(u)).collect();
-        context.upload_at(&self.committed, index * 3 * sizes.nodes, &rounded)?;
+        context.upload_at(&self.start, index * sizes.start_numbers(), &rounded)?;
         let gaps: Vec<R> = mesh
             .contact_nodes
             .iter()
             .map(|&n| R::of(crate::contact::plane::gap(mesh.nodes[n as usize][2], displacement[3 * n as usize + 2])))
             .collect();
-        context.upload_at(&self.gap, index * sizes.contact_points, &gaps)
+        context.upload_at(&self.gaps, 2 * index * sizes.contact_points, &gaps)
+    }
+
+    /// Sends the heights of the contact points of the group's case `index`, undeformed.
+    fn set_heights(&self, context: &GpuContext, sizes: Sizes, index: usize, mesh: &Mesh) -> Result<(), GpuError> {
+        let heights: Vec<R> = mesh.contact_nodes.iter().map(|&n| R::of(mesh.nodes[n as usize][2])).collect();
+        context.upload_at(&self.gaps, (2 * index + 1) * sizes.contact_points, &heights)
     }
 }
 
@@ -313,7 +329,7 @@ fn friction<R: DeviceReal>(friction: Friction<f64>) -> R {
     }
 }
 
-/// The parameters and hardening tables of cases, with room for those of others.
+/// The materials of cases, with room for those of others.
 ///
 /// # Errors
 /// As [`GpuContext::array`].
@@ -321,13 +337,12 @@ pub fn send_materials<T: DeviceReal>(
     context: &GpuContext,
     sizes: Sizes,
     models: &[CaseModel],
-) -> Result<(StorageBuffer<T>, StorageBuffer<T>), GpuError> {
-    let (parameters, table) = flatten(&materials::<T>(sizes, models));
-    let room = 3 * TABLE_ROOM * sizes.bodies() * models.len();
-    let parameters = context.array("material parameters", &parameters)?;
-    let tables = context.zeros("hardening tables", table.len().max(room))?;
-    context.upload_at(&tables, 0, &table)?;
-    Ok((parameters, tables))
+) -> Result<StorageBuffer<T>, GpuError> {
+    let numbers = flatten(&materials::<T>(sizes, models));
+    let room = (PARAMETERS + 3 * TABLE_ROOM) * sizes.bodies() * models.len();
+    let materials = context.zeros("materials", numbers.len().max(room))?;
+    context.upload_at(&materials, 0, &numbers)?;
+    Ok(materials)
 }
 
 /// Writes those of other cases in their place; `false`, and nothing written, where their tables are
@@ -339,14 +354,13 @@ pub fn replace_materials<T: DeviceReal>(
     context: &GpuContext,
     sizes: Sizes,
     models: &[CaseModel],
-    (parameters, tables): (&StorageBuffer<T>, &StorageBuffer<T>),
+    to: &StorageBuffer<T>,
 ) -> Result<bool, GpuError> {
-    let (numbers, table) = flatten(&materials::<T>(sizes, models));
-    if table.len() > tables.len() {
+    let numbers = flatten(&materials::<T>(sizes, models));
+    if numbers.len() > to.len() {
         return Ok(false);
     }
-    context.upload(parameters, &numbers)?;
-    context.upload_at(tables, 0, &table)?;
+    context.upload_at(to, 0, &numbers)?;
     Ok(true)
 }
 
@@ -357,21 +371,19 @@ fn materials<T: DeviceReal>(sizes: Sizes, models: &[CaseModel]) -> Vec<Material<
     own.chain(opponents).take(sizes.bodies() * models.len()).map(Material::cast).collect()
 }
 
-/// Reference positions of the corners `[mesh][3 a + i][element]` and volumes `[mesh][point]` of
-/// meshes, on the device.
+/// Reference positions of the corners `[3 a + i][element]` and volumes `[point]` of meshes, one
+/// after the other, on the device.
 fn send_geometry<R: DeviceReal>(
     context: &GpuContext,
     sizes: Sizes,
     meshes: &[&Arc<Mesh>],
-) -> Result<(StorageBuffer<R>, StorageBuffer<R>), ComputeError> {
-    let points = sizes.points();
-    let zeros = |what: &str, of_mesh: usize| Ok::<_, GpuError>(context.zeros(what, meshes.len() * of_mesh)?.each(meshes.len()));
-    let coordinates = zeros("reference positions", COORDINATES * sizes.elements)?;
-    let volume = zeros("reference volumes", points)?;
+) -> Result<StorageBuffer<R>, ComputeError> {
+    let geometries =
+        context.zeros("reference positions and volumes", meshes.len() * sizes.geometry_numbers())?.each(meshes.len());
     for (index, mesh) in meshes.iter().enumerate() {
-        write_geometry(context, sizes, (&coordinates, &volume), (index, mesh))?;
+        write_geometry(context, sizes, &geometries, (index, mesh))?;
     }
-    Ok((coordinates, volume))
+    Ok(geometries)
 }
 
 /// Writes those of one mesh, the one of number `index`.
@@ -381,21 +393,20 @@ fn send_geometry<R: DeviceReal>(
 pub fn write_geometry<R: DeviceReal>(
     context: &GpuContext,
     sizes: Sizes,
-    (coordinates, volume): (&StorageBuffer<R>, &StorageBuffer<R>),
+    geometries: &StorageBuffer<R>,
     (index, mesh): (usize, &Mesh),
 ) -> Result<(), ComputeError> {
-    let (positions, volumes) = flatten_geometry::<R>(mesh)?;
-    context.upload_at(coordinates, index * COORDINATES * sizes.elements, &positions)?;
-    context.upload_at(volume, index * sizes.points(), &volumes)?;
+    let numbers = flatten_geometry::<R>(mesh)?;
+    context.upload_at(geometries, index * sizes.geometry_numbers(), &numbers)?;
     Ok(())
 }
 
 /// Positions of the corners relative to the element's first one `[3 a + i][element]`, which keep
 /// their digits far from the origin, and volumes `[point]` of a mesh.
-fn flatten_geometry<R: DeviceReal>(mesh: &Mesh) -> Result<(Vec<R>, Vec<R>), ComputeError> {
+fn flatten_geometry<R: DeviceReal>(mesh: &Mesh) -> Result<Vec<R>, ComputeError> {
     let elements = mesh.elements.len();
-    let mut coordinates = vec![R::ZERO; COORDINATES * elements];
-    let mut volume = vec![R::ZERO; QUADRATURE_POINTS * elements];
+    let mut numbers = vec![R::ZERO; (COORDINATES + QUADRATURE_POINTS) * elements];
+    let (coordinates, volume) = numbers.split_at_mut(COORDINATES * elements);
     for e in 0..elements {
         let positions = mesh.corners(e);
         let geometry = Geometry::<R>::new(&positions)
@@ -407,5 +418,5 @@ fn flatten_geometry<R: DeviceReal>(mesh: &Mesh) -> Result<(Vec<R>, Vec<R>), Comp
             }
         }
     }
-    Ok((coordinates, volume))
+    Ok(numbers)
 }

@@ -4,7 +4,7 @@ use super::buffers::DeviceReal;
 use super::context::GpuContext;
 use super::error::GpuError;
 use super::iterate::arrays::{Kept, Told};
-use super::layout::{HISTORY, ROWS, STRESS};
+use super::layout::{BLOCKS_OF_SLOTS, MOST_SLOTS, NEXT_HISTORY, ROWS, STRESS};
 use super::linear::plan::Plan;
 use super::pools::PoolBytes;
 use super::resident::Sizes;
@@ -46,7 +46,7 @@ impl<'a> Room<'a> {
             cases,
             in_f32: R::PRECISION == Precision::F32,
             stresses: numbers(STRESS * sizes.points()),
-            states: numbers(HISTORY * sizes.points()),
+            states: numbers(NEXT_HISTORY * sizes.points()),
             own: Scratch::<R>::bytes(sizes) + tangents.of_slot,
             told: Told::<R>::bytes(sizes),
             answers: numbers(3 * sizes.nodes + ROWS * sizes.contact_points),
@@ -71,10 +71,10 @@ impl<'a> Room<'a> {
         }
     }
 
-    /// What all cases have besides their residents, and what comes down of one case: its state, and
-    /// its tangent after a linear solve that stalled.
+    /// What all cases have besides their residents, what comes down of one case: its state, and its
+    /// tangent after a linear solve that stalled; and blocks of parameters by slot.
     fn besides(&self) -> u64 {
-        self.tangents.of_case * self.cases as u64 + self.states.max(self.tangents.blocks)
+        self.tangents.of_case * self.cases as u64 + self.states.max(self.tangents.blocks) + BLOCKS_OF_SLOTS
     }
 
     /// The widest array of a slot, and all of it with what comes down: what a trial finds, and its
@@ -126,7 +126,8 @@ impl<'a> Room<'a> {
         self.context.has_room("an evaluation of one case", all + of_iterates)
     }
 
-    /// How many slots there is room for, of which no more than `most` are needed.
+    /// How many slots there is room for, of which no more than `most` are needed, and no more than
+    /// [`MOST_SLOTS`] can be.
     ///
     /// # Errors
     /// [`GpuError::OutOfBudget`] or [`GpuError::TooLarge`] if there is none for one.
@@ -136,7 +137,8 @@ impl<'a> Room<'a> {
         // What the slots share is set aside while their number is found.
         let lists = self.linear.as_ref().map_or(0, Plan::shared_bytes);
         let set_aside = self.context.budget.reserve("lists of the linear solver", lists + self.besides())?;
-        let slots = self.context.chunks("an evaluation", most, widest, all)?.iter().map(|c| c.count).max().unwrap_or(1);
+        let slots =
+            self.context.chunks("an evaluation", most.min(MOST_SLOTS), widest, all)?.iter().map(|c| c.count).max().unwrap_or(1);
         drop(set_aside);
         self.note_cut(widest.max(self.widest))?;
         Ok(slots)

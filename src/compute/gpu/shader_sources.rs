@@ -29,6 +29,8 @@ pub const BODY: Source = source!("element/body.wgsl");
 /// A quadrature point at a trial displacement.
 pub const PAIRS: Source = source!("element/pairs.wgsl");
 const POINT: Source = source!("element/point.wgsl");
+/// What it is evaluated at, for those who only read that.
+const TRIALS: Source = source!("element/trials.wgsl");
 /// Gap and slip.
 pub const PLANE: Source = source!("contact/plane.wgsl");
 /// The contact conditions of a point.
@@ -47,13 +49,13 @@ pub static HEX8_JACOBIAN: Kernel = Kernel::new("hex8_jacobian", &[BATCH, HEX8, H
 /// The weighted stress of every quadrature point.
 pub static HEX8_INTERNAL_FORCE: Kernel = Kernel::new(
     "hex8_internal_force",
-    &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, BODY, HEX8, HANGING, POINT, source!("element/internal_force.wgsl")],
+    &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, BODY, HEX8, HANGING, TRIALS, POINT, source!("element/internal_force.wgsl")],
 );
 
 /// The tangents of all elements, block by block.
 pub static HEX8_TANGENT: Kernel = Kernel::new(
     "hex8_tangent",
-    &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, BODY, HEX8, HANGING, POINT, PAIRS, source!("element/tangent.wgsl")],
+    &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, BODY, HEX8, HANGING, TRIALS, POINT, PAIRS, source!("element/tangent.wgsl")],
 );
 
 /// The state from which every quadrature point starts a step.
@@ -65,13 +67,27 @@ pub static HEX8_BEGIN_STEP: Kernel = Kernel::new(
 /// The state of every quadrature point at the end of a step.
 pub static HEX8_UPDATE: Kernel = Kernel::new(
     "hex8_update",
-    &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, MULTISTEP, BODY, HEX8, HANGING, POINT, source!("element/update.wgsl")],
+    &[
+        BATCH,
+        MATH,
+        TENSOR,
+        HARDENING,
+        MATERIAL,
+        J2,
+        MULTISTEP,
+        BODY,
+        HEX8,
+        HANGING,
+        TRIALS,
+        POINT,
+        source!("element/update.wgsl"),
+    ],
 );
 
 /// The energies of every element at the end of a step.
 pub static HEX8_ENERGIES: Kernel = Kernel::new(
     "hex8_energies",
-    &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, BODY, HEX8, HANGING, source!("element/energies.wgsl")],
+    &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, BODY, HEX8, HANGING, TRIALS, source!("element/energies.wgsl")],
 );
 
 /// A copy in single precision.
@@ -79,7 +95,7 @@ pub static NARROW: Kernel = Kernel::new("narrow", &[BATCH, source!("element/narr
 
 /// Stresses into nodal forces.
 pub static GATHER_NODE_FORCE: Kernel =
-    Kernel::new("gather_node_force", &[BATCH, HEX8, HANGING, source!("gather/node_force.wgsl")]);
+    Kernel::new("gather_node_force", &[BATCH, HEX8, HANGING, TRIALS, source!("gather/node_force.wgsl")]);
 
 /// Moduli into the tangent's upper block triangle.
 pub static GATHER_TANGENT_BLOCKS: Kernel =

@@ -7,7 +7,7 @@ use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
 use super::dispatch::Dispatch;
 use super::error::GpuError;
-use super::layout::{COORDINATES, ELEMENT_BLOCKS, STATE};
+use super::layout::{COORDINATES, ELEMENT_BLOCKS};
 use super::pipelines::{Bound, Recorder};
 use super::resident::{Connectivity, MATERIAL_ROOM, Resident, Sizes, replace_materials, send_materials, write_geometry};
 use super::scratch::Scratch;
@@ -17,14 +17,10 @@ use crate::mesh::Mesh;
 
 /// The arrays of which tangents are made, in one precision.
 struct Inputs<'a, T> {
-    coordinates: &'a StorageBuffer<T>,
-    volume: &'a StorageBuffer<T>,
-    committed: &'a StorageBuffer<T>,
-    increment: &'a StorageBuffer<T>,
-    parameters: &'a StorageBuffer<T>,
-    table: &'a StorageBuffer<T>,
-    state: &'a StorageBuffer<T>,
-    jacobian: &'a StorageBuffer<T>,
+    geometries: &'a StorageBuffer<T>,
+    start: &'a StorageBuffer<T>,
+    trial: &'a StorageBuffer<T>,
+    materials: &'a StorageBuffer<T>,
 }
 
 /// The kernels of a group of cases.
@@ -60,18 +56,18 @@ impl<T: DeviceReal> Set<T> {
         inputs: &Inputs<'_, T>,
     ) -> Result<(), GpuError> {
         let shape = args! { dimensions: scratch.dimensions, active_cases: scratch.active };
-        let element = args! {
+        let jacobian = args! {
             element_nodes: mesh.element_nodes,
-            coordinates: inputs.coordinates,
-            volume: inputs.volume,
-            committed: inputs.committed,
-            increment: inputs.increment,
-            jacobian: inputs.jacobian,
+            geometries: inputs.geometries.partly(COORDINATES * mesh.sizes.elements),
+            starts: inputs.start.partly(3 * mesh.sizes.nodes),
+            trials: inputs.trial,
         };
-        let point = args! {
-            material_parameters: inputs.parameters,
-            hardening_table: inputs.table,
-            state: inputs.state,
+        let elements = args! {
+            element_nodes: mesh.element_nodes,
+            geometries: inputs.geometries,
+            starts: inputs.start,
+            trials: inputs.trial,
+            materials: inputs.materials,
             first_invalid: scratch.first_invalid,
             element_blocks: self.elements,
         };
@@ -82,8 +78,8 @@ impl<T: DeviceReal> Set<T> {
             blocks: self.blocks,
         };
         self.groups.push(Kernels {
-            jacobian: context.bind(&HEX8_JACOBIAN, T::PRECISION, &[&shape[..], &element].concat())?,
-            elements: context.bind(&HEX8_TANGENT, T::PRECISION, &[&shape[..], &element, &point].concat())?,
+            jacobian: context.bind(&HEX8_JACOBIAN, T::PRECISION, &[&shape[..], &jacobian].concat())?,
+            elements: context.bind(&HEX8_TANGENT, T::PRECISION, &[&shape[..], &elements].concat())?,
             blocks: context.bind(&GATHER_TANGENT_BLOCKS, T::PRECISION, &[&shape[..], &gather].concat())?,
         });
         Ok(())
@@ -107,11 +103,9 @@ impl<T: DeviceReal> Set<T> {
 struct Narrowed {
     /// Numbers of a case or slot, with the kernel that copies them.
     copies: Vec<(usize, Bound)>,
-    coordinates: StorageBuffer<f32>,
-    volume: StorageBuffer<f32>,
-    parameters: StorageBuffer<f32>,
-    table: StorageBuffer<f32>,
-    _copied: [StorageBuffer<f32>; 2],
+    geometries: StorageBuffer<f32>,
+    materials: StorageBuffer<f32>,
+    _start: StorageBuffer<f32>,
 }
 
 /// Tangents in single precision beside residuals in another.
@@ -119,8 +113,8 @@ struct Narrowed {
 pub struct Single {
     set: Set<f32>,
     groups: Vec<Narrowed>,
-    _arrays: [StorageBuffer<f32>; 2],
-    _shapes: [StorageBuffer<[u32; 4]>; 3],
+    _trial: StorageBuffer<f32>,
+    _shapes: [StorageBuffer<[u32; 4]>; 2],
 }
 
 impl Single {
@@ -156,13 +150,10 @@ impl<R: DeviceReal> Tangents<R> {
     /// What they take.
     pub fn bytes(sizes: Sizes, in_single: bool) -> Bytes {
         let number = if in_single { size_of::<f32>() } else { size_of::<R>() };
-        let (elements, blocks, points) = (ELEMENT_BLOCKS * sizes.elements, 9 * sizes.blocks, sizes.points());
-        let of_slot = if in_single { points + 3 * sizes.nodes } else { 0 };
-        let of_case = if in_single {
-            COORDINATES * sizes.elements + (1 + STATE) * points + 3 * sizes.nodes + MATERIAL_ROOM * sizes.bodies()
-        } else {
-            0
-        };
+        let (elements, blocks) = (ELEMENT_BLOCKS * sizes.elements, 9 * sizes.blocks);
+        let of_slot = if in_single { sizes.trial_numbers() } else { 0 };
+        let of_case =
+            if in_single { sizes.geometry_numbers() + sizes.start_numbers() + MATERIAL_ROOM * sizes.bodies() } else { 0 };
         let [elements, blocks, of_slot, of_case] = [elements, blocks, of_slot, of_case].map(|numbers| (number * numbers) as u64);
         Bytes { elements, blocks, of_slot, of_case }
     }
@@ -183,63 +174,46 @@ impl<R: DeviceReal> Tangents<R> {
         if !in_single {
             let mut set = Set::new(sizes, scratch, slots)?;
             for r in residents {
-                let inputs = Inputs {
-                    coordinates: &r.coordinates,
-                    volume: &r.volume,
-                    committed: &r.committed,
-                    increment: &scratch.increment,
-                    parameters: &r.parameters,
-                    table: &r.table,
-                    state: &r.state,
-                    jacobian: &scratch.jacobian,
-                };
+                let (geometries, start, materials) = (&r.geometries, &r.start, &r.materials);
+                let inputs = Inputs { geometries, start, trial: &scratch.trial, materials };
                 set.bind(context, mesh, scratch, &inputs)?;
             }
             return Ok(Self::Same(Box::new(set)));
         }
-        let (points, unknowns) = (sizes.points(), 3 * sizes.nodes);
-        let shapes = [(unknowns, 1), (unknowns, 0), (STATE * points, 0)].map(|(count, by_slot)| {
+        // Of increments the Jacobians are made anew.
+        let [of_trial, of_start] = [sizes.trial_numbers(), sizes.start_numbers()];
+        let shape = |count: usize, by_slot: u32, of: usize| {
             let block = context.block("shape of a copy")?;
-            context.upload(&block, &[[count as u32, by_slot, 0, 0]])?;
+            context.upload(&block, &[[count as u32, by_slot, of as u32, 0]])?;
             Ok::<_, GpuError>(block)
-        });
-        let [of_increment, of_displacement, of_state] = shapes;
-        let shapes = [of_increment?, of_displacement?, of_state?];
+        };
+        let (unknowns, shapes) = (3 * sizes.nodes, [shape(3 * sizes.nodes, 1, of_trial)?, shape(of_start, 0, of_start)?]);
         let mut set = Set::new(sizes, scratch, slots)?;
-        let increment = context.zeros("increments in f32", slots * unknowns)?.each(slots);
-        let jacobian = context.zeros("Jacobians in f32", slots * points)?.each(slots);
+        let trial = context.zeros("increments and Jacobians in f32", slots * of_trial)?.each(slots);
         let mut groups = Vec::with_capacity(residents.len());
         for r in residents {
-            let (coordinates, volume) = r.geometry::<f32>(context, sizes, models)?;
-            let committed = context.zeros("committed displacements in f32", r.count * unknowns)?.each(r.count);
-            let state = context.zeros("states in f32", r.count * STATE * points)?.each(r.count);
-            let (parameters, table) = send_materials::<f32>(context, sizes, &models[r.first..r.first + r.count])?;
-            let inputs = Inputs {
-                coordinates: &coordinates,
-                volume: &volume,
-                committed: &committed,
-                increment: &increment,
-                parameters: &parameters,
-                table: &table,
-                state: &state,
-                jacobian: &jacobian,
-            };
-            set.bind(context, mesh, scratch, &inputs)?;
-            let pairs = [(&scratch.increment, &increment), (&r.committed, &committed), (&r.state, &state)];
-            let counts = [unknowns, unknowns, STATE * points];
+            let geometries = r.geometry::<f32>(context, sizes, models)?;
+            let start = context.zeros("displacements and states in f32", r.count * of_start)?.each(r.count);
+            let materials = send_materials::<f32>(context, sizes, &models[r.first..r.first + r.count])?;
+            set.bind(
+                context,
+                mesh,
+                scratch,
+                &Inputs { geometries: &geometries, start: &start, trial: &trial, materials: &materials },
+            )?;
+            let pairs = [(unknowns, &scratch.trial, &trial), (of_start, &r.start, &start)];
             let copies = pairs
                 .into_iter()
                 .zip(&shapes)
-                .zip(counts)
-                .map(|(((wide, copy), shape), count)| {
+                .map(|((count, wide, copy), shape)| {
+                    let (wide, copy) = (wide.partly(count), copy.partly(count));
                     let arguments = args! { dimensions: scratch.dimensions, active_cases: scratch.active, shape, wide, copy };
                     Ok((count, context.bind(&NARROW, R::PRECISION, &arguments)?))
                 })
                 .collect::<Result<Vec<_>, GpuError>>()?;
-            let _copied = [committed, state];
-            groups.push(Narrowed { copies, coordinates, volume, parameters, table, _copied });
+            groups.push(Narrowed { copies, geometries, materials, _start: start });
         }
-        Ok(Self::Single(Box::new(Single { set, groups, _arrays: [increment, jacobian], _shapes: shapes })))
+        Ok(Self::Single(Box::new(Single { set, groups, _trial: trial, _shapes: shapes })))
     }
 
     /// After [`Resident::replace`] with these `models`: sends what there is in single precision of
@@ -257,9 +231,9 @@ impl<R: DeviceReal> Tangents<R> {
     ) -> Result<(), ComputeError> {
         let Self::Single(single) = self else { return Ok(()) };
         let narrowed = &single.groups[group];
-        write_geometry(context, sizes, (&narrowed.coordinates, &narrowed.volume), of_mesh)?;
+        write_geometry(context, sizes, &narrowed.geometries, of_mesh)?;
         // The tables fit: those in the residual's precision did, and are as long.
-        replace_materials(context, sizes, models, (&narrowed.parameters, &narrowed.table)).map(drop)?;
+        replace_materials(context, sizes, models, &narrowed.materials).map(drop)?;
         Ok(())
     }
 

@@ -3,7 +3,7 @@
 use super::super::buffers::{DeviceReal, StorageBuffer};
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
-use super::super::layout::{AT_POINT, ROWS};
+use super::super::layout::{AT_POINT, CONDITIONS, MOST_SLOTS};
 use super::super::linear::records::Record;
 use super::super::linear::sizes::THREADS;
 use super::super::resident::{Resident, Sizes};
@@ -22,30 +22,27 @@ pub(in super::super) const PARTS: usize = 4;
 pub(in super::super) const IS_PLATE: u32 = 8;
 pub(in super::super) const FIRST_POINT: u32 = 16;
 
+/// Bits of `let_go`.
+pub(in super::super) const SLIDES: u32 = 1;
+pub(in super::super) const CAME_OFF: u32 = 2;
+
 /// What stays on the device of each case of a group.
 #[derive(Debug)]
 pub struct Kept<R> {
-    /// Increments since the start of the step, `[case][iterate][3 node + i]`.
-    pub increments: StorageBuffer<R>,
-    /// Internal forces, alike.
-    pub forces: StorageBuffer<R>,
+    /// Increments since the start of the step, and internal forces,
+    /// `[case][iterate][increment, force][3 node + i]`.
+    pub iterates: StorageBuffer<R>,
     /// `[case][3 node + i]`.
     pub correction: StorageBuffer<R>,
     pub(super) by_residual: StorageBuffer<R>,
     /// Displacement one step before the committed one, `[case][3 node + i]`.
     pub before: StorageBuffer<R>,
-    /// Contact points that slide without friction in this step, `[case][point]`.
-    pub slides: StorageBuffer<u32>,
-    /// Contact points that came off in this step, `[case][point]`.
-    pub came_off: StorageBuffer<u32>,
+    /// Contact points that slide without friction in this step, or came off, `[case][point]`.
+    pub let_go: StorageBuffer<u32>,
     pub(super) rows: StorageBuffer<R>,
-    pub(super) codes: StorageBuffer<u32>,
     pub(super) response: StorageBuffer<f32>,
-    pub(super) largest: StorageBuffer<R>,
     pub(super) node_info: StorageBuffer<u32>,
-    pub(super) plate: StorageBuffer<u32>,
     pub(super) plate_weight: StorageBuffer<R>,
-    pub(super) height: StorageBuffer<R>,
 }
 
 impl<R: DeviceReal> Kept<R> {
@@ -59,25 +56,16 @@ impl<R: DeviceReal> Kept<R> {
         let of = |geometry: usize| resident.geometry_of.iter().position(|&g| g as usize == geometry).unwrap_or(0);
         let meshes: Vec<&Mesh> = (0..geometries).map(|geometry| &*models[of(geometry)].mesh).collect();
         let weights: Vec<R> = meshes.iter().map(|mesh| R::of(missing_weight(mesh))).collect();
-        let heights: Vec<R> = meshes.iter().flat_map(|mesh| heights(mesh)).collect();
-        let plate: Vec<u32> =
-            std::iter::once(meshes[0].plate_nodes.len() as u32).chain(meshes[0].plate_nodes.iter().copied()).collect();
         Ok(Self {
-            increments: context.zeros("iterates", cases * 2 * n)?.each(2 * cases),
-            forces: context.zeros("forces of iterates", cases * 2 * n)?.each(2 * cases),
+            iterates: context.zeros("iterates and their forces", cases * 4 * n)?.each(2 * cases),
             correction: context.zeros("corrections", cases * n)?.each(cases),
             by_residual: context.zeros("corrections at constant h", cases * n)?.each(cases),
             before: context.zeros("earlier displacements", cases * n)?.each(cases),
-            slides: context.zeros("sliding points", cases * points)?.each(cases),
-            came_off: context.zeros("points that came off", cases * points)?.each(cases),
-            rows: context.zeros("contact rows of iterates", cases * 2 * ROWS * points)?.each(2 * cases),
-            codes: context.zeros("contact status of iterates", cases * 2 * points)?.each(2 * cases),
+            let_go: context.zeros("points that slide or came off", cases * points)?.each(cases),
+            rows: context.zeros("contact conditions of iterates", cases * 2 * CONDITIONS * points)?.each(2 * cases),
             response: context.zeros("responses to a unit indentation", cases * n)?.each(cases),
-            largest: context.zeros("largest right-hand sides", cases * 2)?,
             node_info: context.array("what nodes are", &node_info(meshes[0]))?.whole(),
-            plate: context.array("plate nodes", &plate)?,
             plate_weight: context.array("weights of missing displacements", &weights)?,
-            height: context.array("heights of contact points", &heights)?.each(geometries),
         })
     }
 
@@ -95,22 +83,17 @@ impl<R: DeviceReal> Kept<R> {
     ) -> Result<(), GpuError> {
         let (n, points) = (3 * sizes.nodes, sizes.contact_points);
         context.upload_at(&self.plate_weight, geometry, &[R::of(missing_weight(mesh))])?;
-        context.upload_at(&self.height, geometry * points, &heights::<R>(mesh))?;
         let mut list = context.record();
         for (array, of_case) in [
-            (&self.increments, 2 * n),
-            (&self.forces, 2 * n),
+            (&self.iterates, 4 * n),
             (&self.correction, n),
             (&self.by_residual, n),
             (&self.before, n),
-            (&self.rows, 2 * ROWS * points),
-            (&self.largest, 2),
+            (&self.rows, 2 * CONDITIONS * points),
         ] {
             list.clear(array, index * of_case, of_case)?;
         }
-        for (array, of_case) in [(&self.slides, points), (&self.came_off, points), (&self.codes, 2 * points)] {
-            list.clear(array, index * of_case, of_case)?;
-        }
+        list.clear(&self.let_go, index * points, points)?;
         list.clear(&self.response, index * n, n)?;
         list.submit()
     }
@@ -118,13 +101,8 @@ impl<R: DeviceReal> Kept<R> {
     /// Bytes of a case.
     pub fn bytes(sizes: Sizes) -> u64 {
         let (n, points) = (3 * sizes.nodes, sizes.contact_points);
-        (size_of::<R>() * (7 * n + 2 * ROWS * points) + size_of::<u32>() * (n + 4 * points)) as u64
+        (size_of::<R>() * (7 * n + 2 * CONDITIONS * points) + size_of::<u32>() * (n + points)) as u64
     }
-}
-
-/// Heights of a mesh's contact points.
-fn heights<R: DeviceReal>(mesh: &Mesh) -> Vec<R> {
-    mesh.contact_nodes.iter().map(|&n| R::of(mesh.nodes[n as usize][2])).collect()
 }
 
 /// What each node is, as `node_info.wgsl` has it.
@@ -166,8 +144,6 @@ pub struct Told<R> {
     pub corrections: StorageBuffer<Record>,
     /// `[slot]`: the same of the responses to a unit indentation.
     pub units: StorageBuffer<Record>,
-    /// `[slot]`: change of h along such a correction.
-    pub(super) depth_changes: StorageBuffer<R>,
 }
 
 impl<R: DeviceReal> Told<R> {
@@ -178,7 +154,7 @@ impl<R: DeviceReal> Told<R> {
     pub fn new(context: &GpuContext, sizes: Sizes, slots: usize) -> Result<Self, GpuError> {
         let zeros = |what: &str, numbers: usize| context.zeros(what, slots * numbers);
         Ok(Self {
-            marks: context.zeros("marks", slots)?,
+            marks: context.blocks("marks", MOST_SLOTS)?,
             numbers: zeros("numbers", NUMBERS)?,
             readings: zeros("readings", READINGS)?,
             counts: context.zeros("counts", slots)?,
@@ -190,14 +166,13 @@ impl<R: DeviceReal> Told<R> {
             partial_sums: zeros("partial sums of trials", PARTS * sizes.nodes.div_ceil(THREADS))?,
             corrections: context.zeros("solves of corrections", slots)?,
             units: context.zeros("solves of responses", slots)?,
-            depth_changes: zeros("changes of h", 1)?,
         })
     }
 
     /// Bytes of a slot.
     pub fn bytes(sizes: Sizes) -> u64 {
-        let numbers = NUMBERS + READINGS + 4 + AT_POINT * sizes.contact_points + PARTS * sizes.nodes.div_ceil(THREADS);
-        let words = 10 + sizes.contact_points;
+        let numbers = NUMBERS + READINGS + 3 + AT_POINT * sizes.contact_points + PARTS * sizes.nodes.div_ceil(THREADS);
+        let words = 6 + sizes.contact_points;
         (size_of::<R>() * numbers + size_of::<u32>() * words + 2 * size_of::<Record>()) as u64
     }
 }

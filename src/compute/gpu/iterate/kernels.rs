@@ -1,7 +1,7 @@
 //! The kernels of Newton's iterates, bound to the arrays of a group of cases.
 
 use super::super::arguments::{Argument, args};
-use super::super::buffers::DeviceReal;
+use super::super::buffers::{DeviceReal, Partly};
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
 use super::super::kernel::Kernel;
@@ -51,20 +51,33 @@ impl<R: DeviceReal> Arrays<'_, R> {
             active_cases: scratch.active,
             marks: told.marks,
             numbers: told.numbers,
-            depth_changes: told.depth_changes,
         };
         self.context.bind(kernel, R::PRECISION, &[&shape[..], &parts.concat()].concat())
     }
 
-    /// Of both iterates of a case.
-    fn iterates(&self) -> [Argument<'_>; 4] {
-        let kept = self.kept;
-        args! { increments: kept.increments, forces: kept.forces, rows: kept.rows, codes: kept.codes }
+    /// The increments or the forces of iterates: one of the two vectors of each.
+    fn iterates(&self) -> Partly<'_, R> {
+        self.kept.iterates.partly(self.unknowns())
+    }
+
+    /// The increments of slots, as the elements read them.
+    fn trial(&self) -> Partly<'_, R> {
+        self.scratch.trial.partly(self.unknowns())
+    }
+
+    fn unknowns(&self) -> usize {
+        3 * self.mesh.sizes.nodes
     }
 
     /// As `residual.wgsl` has them.
-    fn residual(&self) -> [Argument<'_>; 3] {
-        args! { committed: self.resident.committed, node_info: self.kept.node_info, weight: self.resident.weight }
+    fn residual(&self) -> [Argument<'_>; 4] {
+        let Self { resident, kept, .. } = self;
+        args! {
+            starts: resident.start.partly(self.unknowns()),
+            node_info: kept.node_info,
+            iterates: self.iterates(),
+            rows: kept.rows,
+        }
     }
 
     fn kernels(&self) -> Result<Kernels, GpuError> {
@@ -92,22 +105,24 @@ impl<R: DeviceReal> Arrays<'_, R> {
 
     fn of_trials(&self) -> Result<[Bound; 5], GpuError> {
         let Self { mesh, resident, scratch, kept, told, .. } = self;
+        let points = mesh.sizes.contact_points;
         let place = args! {
-            committed: resident.committed,
+            starts: resident.start,
             before: kept.before,
             correction: kept.correction,
             node_info: kept.node_info,
-            gap_at_start: resident.gap,
-            increments: kept.increments,
-            increment: scratch.increment,
+            gaps: resident.gaps,
+            iterates: self.iterates(),
+            trials: self.trial(),
         };
         let contact = args! {
-            contact_node: mesh.contact_node,
+            surface: mesh.surface.partly(points),
             weight: resident.weight,
-            on_symmetry_plane: mesh.on_symmetry_plane,
             friction: resident.friction,
-            slides: kept.slides,
-            gap_at_start: resident.gap,
+            let_go: kept.let_go,
+            gaps: resident.gaps.partly(points),
+            iterates: kept.iterates,
+            rows: kept.rows,
         };
         let measure = args! {
             correction: kept.correction,
@@ -115,45 +130,36 @@ impl<R: DeviceReal> Arrays<'_, R> {
             partial_sums: told.partial_sums,
         };
         let read = args! {
-            plate: kept.plate,
-            contact_node: mesh.contact_node,
-            forces: kept.forces,
+            surface: mesh.surface,
+            iterates: kept.iterates,
             rows: kept.rows,
-            codes: kept.codes,
-            slides: kept.slides,
-            came_off: kept.came_off,
+            let_go: kept.let_go,
             partial_sums: told.partial_sums,
-            largest: kept.largest,
             readings: told.readings,
             counts: told.counts,
         };
         Ok([
             self.bind(&sources::PLACE, &[&place])?,
-            self.bind(&sources::SAVE, &[&args! { force: scratch.force, forces: kept.forces }])?,
-            self.bind(&sources::CONTACT, &[&self.iterates(), &contact])?,
-            self.bind(&sources::MEASURE, &[&self.iterates(), &self.residual(), &measure])?,
+            self.bind(&sources::SAVE, &[&args! { force: scratch.force, iterates: self.iterates() }])?,
+            self.bind(&sources::CONTACT, &[&contact])?,
+            self.bind(&sources::MEASURE, &[&self.residual(), &measure])?,
             self.bind(&sources::READ, &[&read])?,
         ])
     }
 
     fn of_systems(&self) -> Result<[Bound; 7], GpuError> {
-        let Self { scratch, solver, kept, told, .. } = self;
+        let Self { solver, kept, told, .. } = self;
         let OfIterates { rhs, fixed, rows, guess, answer } = *solver;
-        let current = args! { increments: kept.increments, increment: scratch.increment };
-        let system = args! { largest: kept.largest, rhs, is_fixed: fixed, sliding: rows };
-        let expand = args! {
-            largest: kept.largest,
-            answer,
-            correction: kept.correction,
-            by_residual: kept.by_residual,
-        };
+        let current = args! { iterates: self.iterates(), trials: self.trial() };
+        let system = args! { rhs, is_fixed: fixed, sliding: rows };
+        let expand = args! { answer, correction: kept.correction, by_residual: kept.by_residual };
         let unit = args! { node_info: kept.node_info, is_fixed: fixed, response: kept.response, rhs, guess };
         let respond = args! { answer, rhs, is_fixed: fixed, response: kept.response };
         let press = args! { response: kept.response, by_residual: kept.by_residual, correction: kept.correction };
         Ok([
             self.bind(&sources::CURRENT, &[&current])?,
-            self.bind(&sources::SYSTEM, &[&self.iterates(), &self.residual(), &system])?,
-            self.bind(&sources::EXPAND, &[&self.iterates(), &self.residual(), &expand])?,
+            self.bind(&sources::SYSTEM, &[&self.residual(), &system])?,
+            self.bind(&sources::EXPAND, &[&self.residual(), &expand])?,
             self.bind(&sources::UNIT, &[&unit])?,
             self.bind(&sources::RESPOND, &[&respond])?,
             self.bind(&sources::DEPTH, &[&args! { corrections: told.corrections, units: told.units }])?,
@@ -163,19 +169,20 @@ impl<R: DeviceReal> Arrays<'_, R> {
 
     fn of_steps(&self) -> Result<[Bound; 3], GpuError> {
         let Self { resident, scratch, kept, told, .. } = self;
-        let land = args! { codes: kept.codes, slides: kept.slides, came_off: kept.came_off };
+        let land = args! { rows: kept.rows, let_go: kept.let_go };
         let commit = args! {
             node_info: kept.node_info,
-            height: kept.height,
-            committed: resident.committed,
+            iterates: self.iterates(),
+            starts: resident.start.partly(self.unknowns()),
+            rows: kept.rows,
             before: kept.before,
-            gap_at_start: resident.gap,
+            gaps: resident.gaps.partly(self.mesh.sizes.contact_points),
             at_points: told.at_points,
             status: told.status,
         };
         Ok([
             self.bind(&sources::LAND, &[&land])?,
-            self.bind(&sources::COMMIT, &[&self.iterates(), &commit])?,
+            self.bind(&sources::COMMIT, &[&commit])?,
             self.bind(&sources::ENERGIES, &[&args! { energies: scratch.energies, totals: told.energies }])?,
         ])
     }

@@ -25,8 +25,6 @@ pub mod flags {
     pub const PLACES_PLATE: u32 = 1;
     /// The merit has the missing normal force in it.
     pub const HOLDS_FORCE: u32 = 2;
-    /// h changes by what is missing over the response to a unit indentation.
-    pub const RESPONDS: u32 = 4;
     /// Points below the plane are put on it.
     pub const LIFTS: u32 = 8;
     /// The first system of its step.
@@ -55,7 +53,7 @@ pub mod number {
     pub const DEPTH: usize = 1;
     /// delta_T.
     pub const SHEAR: usize = 2;
-    /// Change of h along the correction.
+    /// Change of h along the correction; where a force is held, `depth.wgsl` finds it.
     pub const DEPTH_CHANGE: usize = 3;
     /// Force that is held.
     pub const HELD_FORCE: usize = 4;
@@ -114,8 +112,6 @@ pub struct Brought<R> {
     pub increments: Vec<R>,
     /// Internal forces, `[3 node + i]`.
     pub forces: Vec<R>,
-    /// Contact points that slide without friction.
-    pub slides: Vec<u32>,
-    /// Contact points that have come off.
-    pub came_off: Vec<u32>,
+    /// Contact points that slide without friction, or have come off: bits.
+    pub let_go: Vec<u32>,
 }

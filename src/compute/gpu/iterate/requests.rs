@@ -4,6 +4,7 @@ use super::super::backend::Gpu;
 use super::super::buffers::DeviceReal;
 use super::super::dispatch::{Dispatch, status_of};
 use super::super::linear::records::Solves;
+use super::arrays::{CAME_OFF, SLIDES};
 use super::marks::{Brought, Corrections, Mark, Readout, flags, number, source};
 use crate::compute::call::not_asked;
 use crate::compute::iterate::{
@@ -191,7 +192,6 @@ impl<R: DeviceReal> Gpu<R> {
         mark.numbers[number::STEP] = 1.0;
         mark.numbers[number::BACK] = 1.0 / scale(self.largest[request.case][mark.current as usize]);
         if let Some(force) = request.plate.held {
-            mark.flags |= flags::RESPONDS;
             mark.numbers[number::MISSING] = force - ask.plate_force;
         }
         mark
@@ -275,9 +275,9 @@ impl<R: DeviceReal> Gpu<R> {
         request.answer = match &request.ask {
             Ask::Bring => {
                 self.refresh(case)?;
-                let Brought { increments, forces, slides, came_off } = self.batch()?.bring_iterate(case, self.current[case])?;
+                let Brought { increments, forces, let_go } = self.batch()?.bring_iterate(case, self.current[case])?;
                 let displacement = increments.iter().zip(&self.committed[case]).map(|(d, u)| u + d.to_f64()).collect();
-                let [sliding, came_off] = [slides, came_off].map(|points| points.iter().map(|&point| point != 0).collect());
+                let [sliding, came_off] = [SLIDES, CAME_OFF].map(|bit| let_go.iter().map(|&bits| bits & bit != 0).collect());
                 Reply::Vectors(Box::new(Vectors { displacement, force: numbers(forces), sliding, came_off }))
             }
             Ask::Give(correction) => {
@@ -312,7 +312,8 @@ impl<R: DeviceReal> Gpu<R> {
     }
 }
 
-/// The power of two that `scale_exponent` of `residual.wgsl` finds.
+/// The power of two by which numbers as large as this come near to 1: systems are solved in single
+/// precision, whose squares must not leave its range.
 fn scale(largest: f64) -> f64 {
     let single = largest as f32;
     if !(single > 0.0 && single.is_finite()) {

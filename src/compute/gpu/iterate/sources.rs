@@ -6,6 +6,7 @@ use super::super::source::{Source, source};
 
 const TOLD: Source = source!("iterate/told.wgsl");
 const ITERATE: Source = source!("iterate/iterate.wgsl");
+const CONDITIONS: Source = source!("iterate/conditions.wgsl");
 const NODE_INFO: Source = source!("iterate/node_info.wgsl");
 const NODE_RESIDUAL: Source = source!("iterate/residual.wgsl");
 const SUMS: Source = source!("linalg/sums.wgsl");
@@ -27,20 +28,22 @@ pub static CONTACT: Kernel =
 /// The sums of which its merit is made.
 pub static MEASURE: Kernel = Kernel::new(
     "iterate_measure",
-    &[BATCH, TOLD, ITERATE, NODE_INFO, NODE_RESIDUAL, SUMS, PARTS, source!("iterate/measure.wgsl")],
+    &[BATCH, TOLD, ITERATE, CONDITIONS, NODE_INFO, NODE_RESIDUAL, SUMS, PARTS, source!("iterate/measure.wgsl")],
 );
 
 /// What the host decides by.
 pub static READ: Kernel =
-    Kernel::new("iterate_read", &[BATCH, TOLD, ITERATE, COULOMB, SUMS, PARTS, source!("iterate/read.wgsl")]);
+    Kernel::new("iterate_read", &[BATCH, TOLD, ITERATE, CONDITIONS, COULOMB, SUMS, PARTS, source!("iterate/read.wgsl")]);
 
 /// The linear system at the current iterate.
-pub static SYSTEM: Kernel =
-    Kernel::new("iterate_system", &[BATCH, TOLD, ITERATE, NODE_INFO, NODE_RESIDUAL, COULOMB, source!("iterate/system.wgsl")]);
+pub static SYSTEM: Kernel = Kernel::new(
+    "iterate_system",
+    &[BATCH, TOLD, ITERATE, CONDITIONS, NODE_INFO, NODE_RESIDUAL, COULOMB, source!("iterate/system.wgsl")],
+);
 
 /// The correction.
 pub static EXPAND: Kernel =
-    Kernel::new("iterate_expand", &[BATCH, TOLD, ITERATE, NODE_INFO, NODE_RESIDUAL, source!("iterate/expand.wgsl")]);
+    Kernel::new("iterate_expand", &[BATCH, TOLD, ITERATE, CONDITIONS, NODE_INFO, NODE_RESIDUAL, source!("iterate/expand.wgsl")]);
 
 /// The system of the response to a unit indentation.
 pub static UNIT: Kernel = Kernel::new("iterate_unit", &[BATCH, TOLD, ITERATE, NODE_INFO, source!("iterate/unit.wgsl")]);
@@ -55,11 +58,11 @@ pub static DEPTH: Kernel = Kernel::new("iterate_depth", &[BATCH, TOLD, source!("
 pub static PRESS: Kernel = Kernel::new("iterate_press", &[BATCH, TOLD, ITERATE, source!("iterate/press.wgsl")]);
 
 /// Points that come down again under full stick.
-pub static LAND: Kernel = Kernel::new("iterate_land", &[BATCH, TOLD, ITERATE, COULOMB, source!("iterate/land.wgsl")]);
+pub static LAND: Kernel = Kernel::new("iterate_land", &[BATCH, TOLD, ITERATE, CONDITIONS, COULOMB, source!("iterate/land.wgsl")]);
 
 /// The committed displacement.
 pub static COMMIT: Kernel =
-    Kernel::new("iterate_commit", &[BATCH, TOLD, ITERATE, NODE_INFO, PLANE, COULOMB, source!("iterate/commit.wgsl")]);
+    Kernel::new("iterate_commit", &[BATCH, TOLD, ITERATE, CONDITIONS, NODE_INFO, PLANE, COULOMB, source!("iterate/commit.wgsl")]);
 
 /// Energies of the body.
 pub static ENERGIES: Kernel =

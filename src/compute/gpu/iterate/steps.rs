@@ -10,7 +10,7 @@ use super::super::layout::AT_POINT;
 use super::super::linear::records::Solves;
 use super::super::linear::solver::Linear;
 use super::super::pipelines::Recorder;
-use super::arrays::{Kept, READINGS};
+use super::arrays::{Kept, READINGS, SLIDES};
 use super::kernels::Iterates;
 use super::marks::{Brought, Committed, Corrections, Mark, Readout, flags};
 use crate::compute::{Energies, Outcome};
@@ -324,9 +324,8 @@ impl<R: DeviceReal> Batch<R> {
     pub fn set_sliding(&self, case: usize, sliding: &[bool]) -> Result<(), GpuError> {
         let (kept, index) = self.kept(case)?;
         let points = self.sizes().contact_points;
-        let words: Vec<u32> = sliding.iter().map(|&slides| slides.into()).collect();
-        self.context.upload_at(&kept.slides, index * points, &words)?;
-        self.context.upload_at(&kept.came_off, index * points, &vec![0; points])
+        let words: Vec<u32> = sliding.iter().map(|&slides| if slides { SLIDES } else { 0 }).collect();
+        self.context.upload_at(&kept.let_go, index * points, &words)
     }
 
     /// Increments and internal forces of an iterate of a case, and which points slide.
@@ -337,15 +336,14 @@ impl<R: DeviceReal> Batch<R> {
         let (kept, index) = self.kept(case)?;
         let (n, points) = (3 * self.sizes().nodes, self.sizes().contact_points);
         let (mut increments, mut forces) = (vec![R::ZERO; n], vec![R::ZERO; n]);
-        let (mut slides, mut came_off) = (vec![0; points], vec![0; points]);
-        let first = (2 * index + iterate as usize) * n;
+        let mut let_go = vec![0; points];
+        let first = 2 * (2 * index + iterate as usize) * n;
         self.context.record().submit_and_read(&mut [
-            kept.increments.read(first, &mut increments)?,
-            kept.forces.read(first, &mut forces)?,
-            kept.slides.read(index * points, &mut slides)?,
-            kept.came_off.read(index * points, &mut came_off)?,
+            kept.iterates.read(first, &mut increments)?,
+            kept.iterates.read(first + n, &mut forces)?,
+            kept.let_go.read(index * points, &mut let_go)?,
         ])?;
-        Ok(Brought { increments, forces, slides, came_off })
+        Ok(Brought { increments, forces, let_go })
     }
 
     /// Sets the correction of a case.
@@ -386,7 +384,7 @@ impl<R: DeviceReal> Batch<R> {
     pub fn displacement(&self, case: usize) -> Result<Vec<R>, GpuError> {
         let (resident, index) = self.resident(case)?;
         let mut out = vec![R::ZERO; 3 * self.sizes().nodes];
-        self.context.download_at(&resident.committed, index * out.len(), &mut out)?;
+        self.context.download_at(&resident.start, index * self.sizes().start_numbers(), &mut out)?;
         Ok(out)
     }
 

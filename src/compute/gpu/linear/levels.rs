@@ -8,15 +8,12 @@ use super::super::kernel::Kernel;
 use super::super::pools::Pools;
 use super::calls::Call;
 use super::records::Record;
-use super::sizes::{Account, LevelShape, RESTART, row_threads};
+use super::sizes::{Account, LevelShape, MOST_STEPS, RESTART, SMALL_NODES, row_threads};
 use super::sources::{
     CYCLE_RESIDUAL, GALERKIN_COARSE, GALERKIN_PRODUCT, INVERT_DIAGONAL, PROLONG, RESTRICT, SMALL_DOWN, SMALL_UP, SMOOTH_START,
     SMOOTH_STEP, SOLVE_COARSEST,
 };
 use crate::linalg::layout::{Layout, LevelLayout, Lists, Rows, TransferLayout};
-
-/// Nodes of the largest level that one workgroup smooths.
-const SMALL_NODES: usize = 400;
 
 /// What all levels share.
 #[derive(Clone, Copy, Debug)]
@@ -61,8 +58,9 @@ pub struct Level {
 struct Transfer {
     product_lists: DeviceLists,
     coarse_lists: DeviceLists,
-    prolongation: DeviceLists,
-    restriction: DeviceLists,
+    /// As `transfer.wgsl` has them.
+    prolongation: StorageBuffer<u32>,
+    restriction: StorageBuffer<u32>,
     product: StorageBuffer<f32>,
     products: usize,
     coarse_blocks: usize,
@@ -89,19 +87,17 @@ impl DeviceLists {
         Self::new(context, what, &lists.start, &lists.entry, &lists.weight)
     }
 
-    fn of_rows(context: &GpuContext, what: &str, rows: &Rows) -> Result<Self, GpuError> {
-        Self::new(context, what, &rows.start, &rows.column, &rows.weight)
-    }
-
     /// As `galerkin.wgsl` has them.
     fn as_lists(&self) -> [Argument<'_>; 3] {
         args! { list_start: self.start, list_entry: self.entry, list_weight: self.weight }
     }
+}
 
-    /// As `transfer.wgsl` has them.
-    fn as_rows(&self) -> [Argument<'_>; 3] {
-        args! { row_start: self.start, row_column: self.entry, row_weight: self.weight }
-    }
+/// A matrix as `transfer.wgsl` has it: where each row begins, then columns with their weights.
+fn transfer_rows(rows: &Rows) -> Vec<u32> {
+    let first = rows.start.len() as u32;
+    let entries = rows.column.iter().zip(&rows.weight).flat_map(|(&column, weight)| [column, weight.to_bits()]);
+    rows.start.iter().map(|start| first + 2 * start).chain(entries).collect()
 }
 
 /// Numbers that a slot takes on a level: the widest array, and all.
@@ -240,8 +236,8 @@ impl Transfer {
         Ok(Self {
             product_lists: DeviceLists::of_lists(context, "blocks of A P", &layout.product)?,
             coarse_lists: DeviceLists::of_lists(context, "blocks of the next level", &layout.coarse)?,
-            prolongation: DeviceLists::of_rows(context, "prolongation", &layout.prolongation)?,
-            restriction: DeviceLists::of_rows(context, "restriction", &layout.restriction)?,
+            prolongation: context.array("prolongation", &transfer_rows(&layout.prolongation))?.whole(),
+            restriction: context.array("restriction", &transfer_rows(&layout.restriction))?.whole(),
             product,
             products,
             coarse_blocks: next.blocks(),
@@ -261,7 +257,8 @@ pub struct Levels {
     pub cycle: Vec<Call>,
     smoothing_steps: usize,
     _shares: Vec<StorageBuffer<[f32; 4]>>,
-    _coarsest: [StorageBuffer<[f32; 2]>; 2],
+    _all_shares: StorageBuffer<[f32; 4]>,
+    _coarsest: StorageBuffer<[f32; 2]>,
 }
 
 impl Levels {
@@ -294,7 +291,9 @@ impl Levels {
             })
             .collect::<Result<Vec<_>, GpuError>>()?;
         let coarsest = context.array("shares of the coarsest level's steps", &layout.coarsest)?;
-        let all_shares = context.array("shares of all smoothing steps", &layout.smoother)?;
+        let all_shares = context.blocks("shares of all smoothing steps", MOST_STEPS)?;
+        let padded: Vec<[f32; 4]> = layout.smoother.iter().map(|&[keep, add]| [keep, add, 0.0, 0.0]).collect();
+        context.upload_at(&all_shares, 0, &padded)?;
         let bind = Binder { context, records, shares: &shares, all_shares: &all_shares };
         let mut update = Vec::new();
         let mut cycle = Vec::new();
@@ -321,7 +320,7 @@ impl Levels {
                 }
             }
         }
-        Ok(Self { levels, update, cycle, smoothing_steps, _shares: shares, _coarsest: [coarsest, all_shares] })
+        Ok(Self { levels, update, cycle, smoothing_steps, _shares: shares, _all_shares: all_shares, _coarsest: coarsest })
     }
 }
 
@@ -365,7 +364,7 @@ struct Binder<'a> {
     context: &'a GpuContext,
     records: &'a StorageBuffer<Record>,
     shares: &'a [StorageBuffer<[f32; 4]>],
-    all_shares: &'a StorageBuffer<[f32; 2]>,
+    all_shares: &'a StorageBuffer<[f32; 4]>,
 }
 
 impl Binder<'_> {
@@ -440,11 +439,17 @@ impl Binder<'_> {
     }
 
     fn restrict(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<Call, GpuError> {
-        let arguments = args! { level: level.block, given: level.residual, to: next.b, records: self.records };
-        self.call(&RESTRICT, row_threads(transfer.coarse_nodes), &[&arguments, &transfer.restriction.as_rows()])
+        let arguments = args! {
+            level: level.block,
+            transfer: transfer.restriction,
+            given: level.residual,
+            to: next.b,
+            records: self.records,
+        };
+        self.call(&RESTRICT, row_threads(transfer.coarse_nodes), &[&arguments])
     }
 
-    fn small<'a>(&'a self, level: &'a Level) -> [Argument<'a>; 10] {
+    fn small<'a>(&'a self, level: &'a Level) -> [Argument<'a>; 8] {
         args! {
             level: level.block,
             column: level.column,
@@ -452,8 +457,6 @@ impl Binder<'_> {
             inverse: level.inverse,
             b: level.b,
             x: level.x,
-            last_step: level.last_step,
-            left: level.residual,
             recurrence: self.all_shares,
             records: self.records,
         }
@@ -461,20 +464,28 @@ impl Binder<'_> {
 
     /// As [`Binder::down`], by one workgroup a slot; it leaves `x`.
     fn small_down(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<[Call; 2], GpuError> {
-        Ok([self.call(&SMALL_DOWN, 1, &[&self.small(level)])?, self.restrict(level, transfer, next)?])
+        let residual = args! { residual: level.residual };
+        Ok([self.call(&SMALL_DOWN, 1, &[&self.small(level), &residual])?, self.restrict(level, transfer, next)?])
     }
 
     /// As [`Binder::up`], by one workgroup a slot.
     fn small_up(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<Call, GpuError> {
-        self.call(&SMALL_UP, 1, &[&self.small(level), &transfer.prolongation.as_rows(), &args! { coarse: next.x }])
+        self.call(&SMALL_UP, 1, &[&self.small(level), &args! { transfer: transfer.prolongation, coarse: next.x }])
     }
 
     /// The next level's correction, and smoothing, which ends in `x`.
     fn up(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<Vec<Call>, GpuError> {
         let odd = self.shares.len() % 2 == 1;
         let (mut x, mut free) = if odd { (&level.other, &level.x) } else { (&level.x, &level.other) };
-        let arguments = args! { level: level.block, given: next.x, to: x, records: self.records, is_fixed: level.fixed };
-        let mut out = vec![self.call(&PROLONG, level.threads(), &[&arguments, &transfer.prolongation.as_rows()])?];
+        let arguments = args! {
+            level: level.block,
+            transfer: transfer.prolongation,
+            given: next.x,
+            to: x,
+            records: self.records,
+            is_fixed: level.fixed,
+        };
+        let mut out = vec![self.call(&PROLONG, level.threads(), &[&arguments])?];
         for step in 0..self.shares.len() {
             out.push(self.smooth(level, step, x, free)?);
             std::mem::swap(&mut x, &mut free);

@@ -10,6 +10,10 @@ pub const THREADS: usize = 256;
 pub const NODES_IN_GROUP: usize = 64;
 /// Threads of such a workgroup.
 pub const ROWS_IN_GROUP: usize = 192;
+/// Nodes of the largest level that one workgroup smooths.
+pub const SMALL_NODES: usize = 400;
+/// Steps of its smoother at the most.
+pub const MOST_STEPS: usize = 8;
 
 /// Numbers of a slot's small arrays, as `krylov.wgsl` lays them out.
 pub fn small_numbers() -> usize {
