@@ -67,9 +67,8 @@ Displacements and angles are totals from first touch, not increments.
 
 Only the lower hemisphere is modelled, and only its half y >= 0 where the path is symmetric about y = 0. The
 segments move its equatorial plane as a [rigid plate](opponents.md). delta_T is the tangential displacement of
-this plate over the opponent; in a roll, the travel of the centre is subtracted. The axes of a case are fixed;
-a DEM engine integrates the same displacement in a [frame that turns with the
-contact](laws.md#the-frame-of-the-centres).
+this plate over the opponent; in a roll, the centre's travel is subtracted. The axes of a case are fixed; a
+DEM engine integrates the same in a [frame that turns with the contact](laws.md#the-frame-of-the-centres).
 
 ```toml
 [[path]]
