@@ -436,19 +436,19 @@ pub const KEYS: &[Key] = &[
         range: UNIT_LABEL,
         meaning: "unit of the radius and of displacements, as in \"mm\"",
         example: "\"mm\"",
-        ..key("units", "length", Text, Optional("normalised axes; where another unit is given, \"case's unit of length\""))
+        ..key("units", "length", Text, Optional("normalised if no unit is named; \"case's unit of length\" if only others are"))
     },
     Key {
         range: UNIT_LABEL,
         meaning: "unit of forces, as in \"N\"",
         example: "\"N\"",
-        ..key("units", "force", Text, Optional("normalised axes; where another unit is given, \"case's unit of force\""))
+        ..key("units", "force", Text, Optional("normalised if no unit is named; \"case's unit of force\" if only others are"))
     },
     Key {
         range: UNIT_LABEL,
         meaning: "unit of Young's modulus and of pressures, as in \"MPa\"",
         example: "\"MPa\"",
-        ..key("units", "stress", Text, Optional("normalised axes; where another unit is given, \"case's unit of stress\""))
+        ..key("units", "stress", Text, Optional("normalised if no unit is named; \"case's unit of stress\" if only others are"))
     },
     Key {
         unit: LENGTH,
@@ -461,10 +461,10 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         unit: LENGTH,
-        range: "-0.5 R to 0.5 R (the smaller radius of two), [x, y] of such lengths, or \"full-slip\"",
+        range: "-0.5 R to 0.5 R (here R is the smaller of two radii), [x, y] of such lengths, or \"full-slip\"",
         meaning: "shear to this total delta_T, of either sign. One number is along x. With [x, y] the shear has both \
-                  components, and the whole sphere is meshed instead of half of it. With \"full-slip\" the shear continues \
-                  until every point slips",
+                  components, and the hemisphere is meshed instead of its half y >= 0. With \"full-slip\" the shear \
+                  continues until every point slips",
         example: "\"full-slip\"",
         ..key("path", "shear", Components(&["full-slip"]), Optional("the segment presses, turns or releases"))
     },
@@ -484,7 +484,8 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: "rad",
         range: "-100 to 100",
-        meaning: "twist the sphere about the normal to this total angle, of either sign; the whole sphere is then meshed",
+        meaning: "twist the sphere about the normal to this total angle, of either sign; the hemisphere is then meshed, not \
+                  half of it",
         example: "0.05",
         ..key("path", "twist", Number(AtLeast(-100.0), AtMost(100.0), &[]), Optional("the sphere does not turn about the normal"))
     },
@@ -492,8 +493,8 @@ pub const KEYS: &[Key] = &[
         unit: "rad",
         range: "-0.5 to 0.5, or [about_x, about_y] of such angles",
         meaning: "roll the sphere to this total angle about y, of either sign, or to two angles about x and y, for \
-                  which the whole sphere is meshed; the centre travels by (R - h) times the angle, so that delta_T does not \
-                  change; refused for a flat and under full stick",
+                  which the hemisphere is meshed, not half of it; the centre travels by (R - h) times the angle, and \
+                  the plate with it, so that delta_T does not change; refused for a flat and under full stick",
         example: "0.02",
         ..key("path", "roll", Components(&[]), Optional("the sphere does not roll"))
     },

