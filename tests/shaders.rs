@@ -83,8 +83,8 @@ fn every_kernel_has_one_entry_point_of_its_name_and_takes_the_same_in_both_preci
     });
 }
 
-/// What WebGPU promises of every adapter: eight storage buffers and twelve uniform ones in a kernel,
-/// 256 threads and 16 KiB in a workgroup. Of a uniform buffer Vulkan promises 16 KiB.
+/// What WebGPU promises of every adapter: eight storage buffers and twelve uniform ones in a
+/// kernel, 256 threads and 16 KiB in a workgroup. Of a uniform buffer Vulkan promises 16 KiB.
 #[test]
 fn no_kernel_takes_more_than_every_adapter_has() {
     let mut beyond = Vec::new();

@@ -38,7 +38,7 @@ pub struct CheckArgs {
     /// Check paths on which the direction of shear changes, instead of the set: circles with radii
     /// of 0.5 and 0.9 of the displacement at full slip, a figure of eight and a corner of 90
     /// degrees. Four paths on which the sphere twists or rolls are simulated too, and their moments
-    /// judged, but they are not counted. All of them take the mesh of the whole sphere.
+    /// judged, but they are not counted. All of them mesh the whole lower hemisphere.
     #[arg(long, conflicts_with = "random")]
     pub turning: bool,
     /// Seed of the random paths.

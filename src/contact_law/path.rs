@@ -86,9 +86,9 @@ pub fn drive_in_the_plane(
     (forces, follower.work - parameters.stored_energy(&follower.state))
 }
 
-/// F_N, F_T along x and y, and the moments about z, x and y at places (h, delta_T along x and y, and
-/// how far the sphere has turned about z, x and y), and the work that the update takes on the way
-/// through them and has not stored at the end.
+/// F_N, F_T along x and y, and the moments about z, x and y at places (h, delta_T along x and y,
+/// and how far the sphere has turned about z, x and y), and the work that the update takes on the
+/// way through them and has not stored at the end.
 pub fn drive_turning(
     parameters: &ContactParameters,
     centres: Centres,

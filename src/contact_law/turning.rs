@@ -9,8 +9,8 @@
 //!   Armstrong and Frederick's: dM = k dtheta - (k/M_max) |dtheta| M, which loses energy on every
 //!   way. Tractions are left behind, too, and a flattened sphere slips as it rolls.
 //!
-//! `twisted`, which enters yield, follows its moment over a little way, and `rolled` is of the start
-//! of a step: so a step that goes nowhere changes nothing.
+//! `twisted`, which enters yield, follows its moment over a little way, and `rolled` is of the
+//! start of a step: a step that goes nowhere changes forces by less than 1e-4 F_N.
 
 use super::sectors::{SECTORS, Sectors, Twist, alike, energy, twisting};
 use super::state::{ContactResponse, ContactState, MOST};
@@ -48,8 +48,8 @@ pub struct Turn {
     pub roll: [f64; 2],
 }
 
-/// Moments of the tractions about the point of the contact, in the direction of the turn: what turns
-/// the sphere; the plane gives it the opposite.
+/// Moments of the tractions about the point of the contact, in the direction of the turn: what
+/// turns the sphere; the plane gives it the opposite.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Moments {
@@ -97,8 +97,8 @@ struct Place {
 }
 
 impl Place {
-    /// Where a contact is that was `rolled` so far; `e` is the elastic approach to take where it has
-    /// not yet touched.
+    /// Where a contact is that was `rolled` so far; `e` is the elastic approach to take where it
+    /// has not yet touched.
     fn of(table: &Table, state: &ContactState, e: f64, rolled: f64) -> Self {
         let row = table.read(table.first + state.hardened, COLUMNS);
         let (gamma, wide) = (row.value[GAMMA], 1.0 + state.stiffened);

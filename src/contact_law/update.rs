@@ -76,8 +76,8 @@ pub(super) fn moved(table: &Table, state: &ContactState, h: f64, d: [f64; 2]) ->
     (state, response)
 }
 
-/// The same with a twist, or none: its sectors' forces and its vertex after the step, where there is
-/// contact.
+/// The same with a twist, or none: its sectors' forces and its vertex after the step, where there
+/// is contact.
 pub(super) fn moved_with(
     table: &Table,
     state: &ContactState,
