@@ -179,7 +179,7 @@ fn verdict(checked: &[Checked], elements: usize, goal: f64) -> (String, bool) {
         let _ = write!(text, "; {left_out} not counted, as their own mesh error is above {limit} % or unknown");
     }
     if !turned.is_empty() {
-        let _ = write!(text, "; {} that twist or roll not counted, as the law has no moments", turned.len());
+        let _ = write!(text, "; {} that twist or roll not counted: forces and moments stand beside them", turned.len());
     }
     let enough = left_out as f64 <= MOST_LEFT_OUT * checked.len() as f64;
     let met = enough && within as f64 >= goal * of as f64;
