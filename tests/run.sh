@@ -143,7 +143,7 @@ passed_or_skipped "$code" "${ASPERITY_REQUIRE_LAMMPS:-}"
 begin "drivers"
 cargo test --quiet --no-run --test conformance
 code=0
-timeout 180 bash tests/drivers/run.sh target/debug/asperity || code=$?
+timeout 480 bash tests/drivers/run.sh target/debug/asperity || code=$?
 passed_or_skipped "$code" "${ASPERITY_REQUIRE_GPU:-}"
 
 # What the README tells a newcomer, from the installation to a run in LAMMPS.

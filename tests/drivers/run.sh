@@ -34,7 +34,7 @@ unset ASPERITY_ADAPTER ASPERITY_DEVICE ASPERITY_GPU_MEMORY
 with() {
     local driver="$1"
     shift
-    timeout 100 env VK_DRIVER_FILES="$driver" VK_ICD_FILENAMES="$driver" "$@"
+    timeout 240 env VK_DRIVER_FILES="$driver" VK_ICD_FILENAMES="$driver" "$@"
 }
 
 fail() {
