@@ -4,13 +4,15 @@
 //! A missing gcc or python3 skips its part, aloud; with `ASPERITY_REQUIRE_COMPILERS=1` that is a
 //! failure.
 
+#[path = "common/contacts.rs"]
+mod contacts;
 #[path = "common/programs.rs"]
 mod programs;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use asperity::case::Case;
@@ -19,22 +21,8 @@ use asperity::contact_law::{Centres, ContactParameters};
 use asperity::law::LawFile;
 use asperity::law::check::AIMS;
 use asperity::law::export::{Language, law_files};
+use contacts::{INCREMENTS, NAMES, folder, law};
 use programs::has;
-
-const NAMES: [&str; 9] = [
-    "ideal-200-mu-0.1",
-    "ideal-200-mu-0.3",
-    "ideal-200-mu-0.6",
-    "ideal-3200-mu-0.1",
-    "ideal-3200-mu-0.3",
-    "ideal-3200-mu-0.6",
-    "power-300-mu-0.1",
-    "power-300-mu-0.3",
-    "power-300-mu-0.6",
-];
-
-/// Increments of the update between two simulated places, as `law check` has them.
-const INCREMENTS: usize = 64;
 
 /// Paths of the 99 that are within both aims in F_T and F_N at the limit of fine meshes, at least.
 const WITHIN: usize = 79;
@@ -46,10 +34,6 @@ const GREATEST: [f64; 3] = [0.291, 0.082, 0.047];
 /// One simulated path: places and forces.
 type Rows = Vec<[f64; 4]>;
 
-fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/paths")
-}
-
 fn paths(name: &str) -> BTreeMap<String, Rows> {
     let mut reader = csv::Reader::from_path(folder().join(format!("{name}.csv"))).unwrap();
     let mut paths: BTreeMap<String, Rows> = BTreeMap::new();
@@ -59,13 +43,6 @@ fn paths(name: &str) -> BTreeMap<String, Rows> {
         paths.entry(record[0].to_owned()).or_default().push(row);
     }
     paths
-}
-
-fn law(name: &str) -> (LawFile, Case) {
-    let law = LawFile::read(&folder().join(format!("{name}.json"))).unwrap();
-    let LawFile::Table(table) = &law else { panic!("{name} is no table") };
-    let case = Case::parse(&table.case, name, &[]).unwrap();
-    (law, case)
 }
 
 /// Errors of F_T and of F_N, root mean square and worst, over the path's greatest.

@@ -3,13 +3,14 @@
 //!
 //! A missing gcc skips its part, aloud; with `ASPERITY_REQUIRE_COMPILERS=1` that is a failure.
 
+#[path = "common/contacts.rs"]
+mod contacts;
 #[path = "common/programs.rs"]
 mod programs;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use asperity::case::Case;
@@ -18,22 +19,8 @@ use asperity::contact_law::{Centres, ContactParameters, ContactState, Turn, Turn
 use asperity::law::LawFile;
 use asperity::law::check::AIMS;
 use asperity::law::export::{Language, law_files};
+use contacts::{INCREMENTS, NAMES, folder, law};
 use programs::has;
-
-const NAMES: [&str; 9] = [
-    "ideal-200-mu-0.1",
-    "ideal-200-mu-0.3",
-    "ideal-200-mu-0.6",
-    "ideal-3200-mu-0.1",
-    "ideal-3200-mu-0.3",
-    "ideal-3200-mu-0.6",
-    "power-300-mu-0.1",
-    "power-300-mu-0.3",
-    "power-300-mu-0.6",
-];
-
-/// Increments of the update between two simulated places, as `law check` has them.
-const INCREMENTS: usize = 64;
 
 /// Of each kind of path: how many of nine contacts are within the aims in F_N, F_T and M_twist, at
 /// least, and the greatest root mean square errors of F_N, F_T, M_twist and M_roll of any, which
@@ -47,14 +34,9 @@ const KNOWN: [(&str, usize, [f64; 4]); 4] = [
 
 type Row = [f64; 12];
 
-fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/paths")
-}
-
-fn law(name: &str) -> (LawFile, ContactParameters, Case) {
-    let law = LawFile::read(&folder().join(format!("{name}.json"))).unwrap();
-    let LawFile::Table(table) = &law else { panic!("{name} is no table") };
-    let case = Case::parse(&table.case, name, &[]).unwrap();
+/// A contact with what its update reads.
+fn contact(name: &str) -> (LawFile, ContactParameters, Case) {
+    let (law, case) = law(name);
     let parameters = law.contact_parameters(&case).unwrap();
     (law, parameters, case)
 }
@@ -92,7 +74,7 @@ fn places(rows: &[Row]) -> Vec<[f64; 6]> {
 fn the_law_follows_twist_and_roll() {
     let mut found: BTreeMap<String, (usize, [f64; 4])> = BTreeMap::new();
     for name in NAMES {
-        let (_, parameters, case) = law(name);
+        let (_, parameters, case) = contact(name);
         for (path, rows) in paths(name) {
             let (law, _) = drive_turning(&parameters, Centres::of(&case), &places(&rows), INCREMENTS);
             let of = |columns: &[usize], is_judged: bool| if is_judged { errors(&rows, &law, columns) } else { [0.0; 2] };
@@ -115,7 +97,7 @@ fn the_law_follows_twist_and_roll() {
 /// A contact that never turned has the forces of the update to the last bit, and stays so.
 #[test]
 fn without_a_turn_nothing_changes() {
-    let (_, parameters, _) = law(NAMES[1]);
+    let (_, parameters, _) = contact(NAMES[1]);
     let (mut one, mut other, turning) = (ContactState::default(), ContactState::default(), TurningState::default());
     for i in 0..400 {
         let t = f64::from(i) / 60.0;
@@ -133,7 +115,7 @@ fn without_a_turn_nothing_changes() {
 #[test]
 fn a_step_that_goes_nowhere_changes_little() {
     let mut most = 0.0f64;
-    let (_, parameters, _) = law(NAMES[4]);
+    let (_, parameters, _) = contact(NAMES[4]);
     let (mut state, mut turning) = (ContactState::default(), TurningState::default());
     for i in 1..=200 {
         let turn = Turn { twist: 2e-4, roll: [1e-4, -2e-4] };
@@ -161,7 +143,7 @@ fn drawn(seed: &mut u64) -> f64 {
 #[test]
 fn no_path_that_turns_gives_more_than_was_put_in() {
     for name in [NAMES[1], NAMES[5], NAMES[6]] {
-        let (_, parameters, _) = law(name);
+        let (_, parameters, _) = contact(name);
         for seed in 0..4 {
             let (mut seed, steps) = (seed + 7, 300);
             let (mut state, mut turning) = (ContactState::default(), TurningState::default());
@@ -216,9 +198,11 @@ int main(int argc, char **argv) {
             }
             for (k = 1; k <= 64; k++) {
                 double turn[3] = {step[4], step[5], step[3]};
-                asperity_update_turning(&table, 1.0, 1.0, &state, &turning, at[0] + step[0] * k, step + 1, turn, &state, &turning, &out, &moments, NULL);
+                asperity_update_turning(&table, 1.0, 1.0, &state, &turning, at[0] + step[0] * k, step + 1, turn,
+                                        &state, &turning, &out, &moments, NULL);
             }
-            printf("%.17g %.17g %.17g %.17g %.17g %.17g\n", out.f_n, out.f_t[0], out.f_t[1], moments.m_twist, moments.m_roll[0], moments.m_roll[1]);
+            printf("%.17g %.17g %.17g %.17g %.17g %.17g\n", out.f_n, out.f_t[0], out.f_t[1],
+                   moments.m_twist, moments.m_roll[0], moments.m_roll[1]);
             memcpy(at, to, sizeof at);
         }
     }
@@ -243,7 +227,8 @@ static double run(const asperity_law3d *law, int turns, double *left) {
     memset(&contact, 0, sizeof contact);
     memset(&turning, 0, sizeof turning);
     for (i = 0; i < 60000; i++) {
-        asperity_sphere_wall_turning(law, &ball, &wall, dt, &contact, &contact, turns ? &turning : NULL, turns ? &turning : NULL, &out);
+        asperity_sphere_wall_turning(law, &ball, &wall, dt, &contact, &contact, turns ? &turning : NULL,
+                                     turns ? &turning : NULL, &out);
         if (!(out.force_i[2] == out.force_i[2]) || out.force_i[0] != -out.force_j[0]) {
             return -1.0;
         }
@@ -305,7 +290,7 @@ fn c_takes_the_same_way() {
         return;
     }
     for name in NAMES {
-        let (law, parameters, case) = law(name);
+        let (law, parameters, case) = contact(name);
         let (mut input, mut ours) = (String::new(), Vec::new());
         for rows in paths(name).into_values() {
             writeln!(input, "{}", rows.len()).unwrap();

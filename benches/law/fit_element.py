@@ -25,6 +25,7 @@ ROOT = HERE.parent.parent
 SOURCE = ROOT / "src" / "contact_law" / "constants.rs"
 PATHS = ROOT / "fixtures" / "paths"
 sys.path.insert(0, str(PATHS))
+import fitted  # noqa: E402
 from make import at_the_limit  # noqa: E402
 
 AIMS = 0.05, 0.12
@@ -99,21 +100,6 @@ def vectors():
                 names = "h", "delta_T", "delta_T_y", "F_N", "F_T", "F_T_y"
                 found.setdefault(row["path"], []).append([float(row[name]) for name in names])
         yield file.stem, (PATHS / file.name).with_suffix(".json"), {k: v for k, v in found.items() if k not in turned}
-
-
-def constants():
-    """Those of the program."""
-    text = SOURCE.read_text()
-    fitted = text[text.index("pub const FITTED") :]
-    return {name: float(re.search(rf"^ +{name}: ([-0-9.e]+),", fitted, re.M).group(1)) for name in CONSTANTS}
-
-
-def write(values):
-    """Puts constants into the source."""
-    head, fitted = SOURCE.read_text().split("pub const FITTED", 1)
-    for name, value in values.items():
-        fitted = re.sub(rf"^( +{name}: )[-0-9.e]+,", rf"\g<1>{value!r},", fitted, count=1, flags=re.M)
-    SOURCE.write_text(f"{head}pub const FITTED{fitted}")
 
 
 def program():
@@ -228,7 +214,7 @@ def main():
     parser.add_argument("--detail", action="store_true", help="each path: F_T rms, worst, F_N rms, worst in per cent")
     args = parser.parse_args()
     driver = Driver(args)
-    start, everything = constants(), [True] * len(driver.paths)
+    start, everything = fitted.read(SOURCE, CONSTANTS), [True] * len(driver.paths)
     scores = driver.scores(start)
     print(f"as it is, cost {cost(driver, scores, everything):.4f}")
     told(driver, scores, args.detail)
@@ -249,7 +235,7 @@ def main():
         for name, value in values.items():
             print(f"{name:14} {start[name]:9.4g} -> {value:.4g}")
         if args.write:
-            write(values)
+            fitted.write(SOURCE, values)
 
 
 if __name__ == "__main__":

@@ -20,6 +20,8 @@ import re
 import subprocess
 import tempfile
 
+import fitted
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 LAW = ROOT / "src" / "contact_law"
 SOURCE = LAW / "turning_constants.rs"
@@ -100,20 +102,6 @@ def closed_forms():
     levers = [scale * lever for lever in raw]
     squared = sum(w * lever**2 for w, lever in zip(weights, levers))
     return levers, squared, (16 / 3) / (8 / 1.7) / squared, held(levers, 1.25)
-
-
-def constants():
-    """Those of the program."""
-    fitted = SOURCE.read_text().split("pub const FITTED", 1)[1]
-    return {name: float(re.search(rf"^ +{name}: ([-0-9.e]+),", fitted, re.M).group(1)) for name in CONSTANTS}
-
-
-def write(values):
-    """Puts constants into the source."""
-    head, fitted = SOURCE.read_text().split("pub const FITTED", 1)
-    for name, value in values.items():
-        fitted = re.sub(rf"^( +{name}: )[-0-9.e]+,", rf"\g<1>{value!r},", fitted, count=1, flags=re.M)
-    SOURCE.write_text(f"{head}pub const FITTED{fitted}")
 
 
 def headers(folder):
@@ -242,7 +230,7 @@ def main():
     levers, squared, stiff, lever = closed_forms()
     print(f"closed forms: levers {levers}, their squares {squared!r}, stiffness {stiff!r}, lever {lever!r}\n")
     driver = Driver(str((ROOT / args.program).resolve()), args.increments)
-    start, everything = constants(), [True] * len(driver.paths)
+    start, everything = fitted.read(SOURCE, CONSTANTS), [True] * len(driver.paths)
     print("as it is")
     told(driver, driver.scores(start, everything), args.detail)
     if args.held_out:
@@ -261,7 +249,7 @@ def main():
         for name, value in values.items():
             print(f"{name:16} {start[name]:9.4g} -> {value:.4g}")
         if args.write:
-            write(values)
+            fitted.write(SOURCE, values)
 
 
 if __name__ == "__main__":

@@ -3,10 +3,9 @@
 use wide::f32x4;
 
 use super::bsr::BlockMatrix;
-use super::kernel::{Inverse, Node, inverse_times, row_times};
+use super::kernel::{Inverse, Node, inverse_times, invert, row_times};
 use super::parallel::{each, each_of_two};
 use super::ties::Ties;
-use crate::lanes::array;
 use crate::mesh::pattern::Pattern;
 
 /// The polynomial damps the eigenvalues of D^-1 A from a lower end to this.
@@ -170,61 +169,4 @@ pub(super) fn shares(high: f32, low: f32) -> impl Iterator<Item = [f32; 2]> {
         Some((next, [next * rho, 2.0 * next / half]))
     })
     .map(|(_, shares)| shares)
-}
-
-/// The inverse of a 3x3 block. Components whose row and column vanish are left alone (their inverse
-/// is 0, so they receive no correction); a block that is singular to rounding is shifted first.
-pub(super) fn invert(block: &[f32; 9]) -> Inverse {
-    let mut a = block.map(f64::from);
-    let scale = a.iter().fold(0.0_f64, |s, x| s.max(x.abs()));
-    let (c, determinant) = cofactors(&a);
-    // Nearly always.
-    if determinant.abs() >= 1e-7 * scale * scale * scale && determinant.is_normal() {
-        let reciprocal = 1.0 / determinant;
-        let inverse: [f32; 9] = array(0.0, |m| (c[m] * reciprocal) as f32);
-        // A finite number times 0 is 0, all others give NaN.
-        if inverse.iter().map(|x| x * 0.0).sum::<f32>() == 0.0 {
-            return array([0.0; 4], |c| [inverse[c], inverse[3 + c], inverse[6 + c], 0.0]);
-        }
-    }
-    if scale == 0.0 || !scale.is_finite() {
-        return [[0.0; 4]; 3];
-    }
-    let empty: [bool; 3] = std::array::from_fn(|c| (0..3).all(|k| a[3 * c + k].abs().max(a[3 * k + c].abs()) <= 1e-12 * scale));
-    for c in 0..3 {
-        if empty[c] {
-            a[4 * c] = scale;
-        }
-    }
-    let (mut c, mut determinant) = cofactors(&a);
-    if determinant.abs() < 1e-7 * scale * scale * scale {
-        for k in 0..3 {
-            a[4 * k] += 0.01 * scale.copysign(a[4 * k]);
-        }
-        (c, determinant) = cofactors(&a);
-    }
-    let inverse = c.map(|x| (x / determinant) as f32);
-    let usable = inverse.iter().all(|x| x.is_finite());
-    let entry = |r: usize, c: usize| match (empty[r] || empty[c], usable) {
-        (true, _) => 0.0,
-        (false, true) => inverse[3 * r + c],
-        (false, false) => f32::from(r == c) / scale as f32,
-    };
-    std::array::from_fn(|c| [entry(0, c), entry(1, c), entry(2, c), 0.0])
-}
-
-/// The adjugate and the determinant.
-fn cofactors(a: &[f64; 9]) -> ([f64; 9], f64) {
-    let c = [
-        a[4] * a[8] - a[5] * a[7],
-        a[2] * a[7] - a[1] * a[8],
-        a[1] * a[5] - a[2] * a[4],
-        a[5] * a[6] - a[3] * a[8],
-        a[0] * a[8] - a[2] * a[6],
-        a[2] * a[3] - a[0] * a[5],
-        a[3] * a[7] - a[4] * a[6],
-        a[1] * a[6] - a[0] * a[7],
-        a[0] * a[4] - a[1] * a[3],
-    ];
-    (c, a[0] * c[0] + a[1] * c[3] + a[2] * c[6])
 }

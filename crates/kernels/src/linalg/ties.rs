@@ -3,8 +3,7 @@
 use wide::f32x4;
 
 use super::bsr::BlockMatrix;
-use super::chebyshev::invert;
-use super::kernel::{Inverse, Node, inverse_times};
+use super::kernel::{Inverse, Node, inverse_times, invert};
 use crate::mesh::Prolongation;
 
 /// Which nodes of a level are tied. A node may be tied to itself: components whose sign is -1 are
