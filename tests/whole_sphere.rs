@@ -10,7 +10,8 @@ use asperity::internals::compute::cpu::Cpu;
 use asperity::internals::contact::coulomb::Status;
 use asperity::internals::simulation::drive::{Drive, Ending, Observer, StepView};
 use asperity::internals::simulation::problem::Problem;
-use asperity::output::StepRecord;
+use asperity::output::{ContactPoint, StepRecord};
+use asperity::session::Simulation;
 
 /// A material of this law, pressed and then moved, in the units of E = 1000 and R = 1.
 fn text(law: &str, friction: &str, elements: usize, path: &[&str]) -> String {
@@ -56,16 +57,21 @@ fn at(rows: &[StepRecord], direction: f64, distance: f64) -> [f64; 3] {
         (along(row.delta_t, row.delta_t_y), [row.f_n, along(row.f_t, row.f_t_y), row.f_t_y * cos - row.f_t * sin])
     };
     let points: Vec<(f64, [f64; 3])> =
-        std::iter::once(last(rows, 0)).chain(rows.iter().filter(|row| row.segment == 1)).map(of).collect();
+        std::iter::once(last(rows, 0)).chain(rows.iter().filter(|row| row.segment > 0)).map(of).collect();
     let k = points.partition_point(|point| point.0 < distance).clamp(1, points.len() - 1);
     let ((a, from), (b, to)) = (points[k - 1], points[k]);
     std::array::from_fn(|i| from[i] + (to[i] - from[i]) * (distance - a) / (b - a))
 }
 
-/// The mesh's own anisotropy: on eight elements 0.9 % at 90 degrees in F_N and F_T, 0.3 % at 45.
+/// The mesh lies along the first shear of a path. After a first shear along x, as short as this one,
+/// all others meet the mesh as it lies then.
+const LAID_ALONG_X: &str = "shear = 1e-9";
+
+/// The mesh's own anisotropy, which is met by a path that leaves its first direction: on eight
+/// elements 0.9 % at 90 degrees in F_N and F_T, 0.3 % at 45.
 #[test]
 fn turned_axes_have_the_forces_of_the_x_axis() {
-    let path = |shear: &str| text(IDEAL, "0.3", 8, &["indentation = 0.02", shear]);
+    let path = |shear: &str| text(IDEAL, "0.3", 8, &["indentation = 0.02", LAID_ALONG_X, shear]);
     let along = rows(&path("shear = 0.004"), &[]);
     let peak = along.iter().fold(0.0, |most: f64, row| most.max(row.f_t));
     for direction in [17.0, 45.0, 90.0] {
@@ -81,26 +87,113 @@ fn turned_axes_have_the_forces_of_the_x_axis() {
     }
 }
 
-/// Two cycles, on half of the default mesh, step by step: F_T and F_N are within 1 %. What is
-/// across is 0.5 % at 45 degrees, and 0.15 % on the default mesh (`benches/turning/axes.py`). With
+/// Two cycles to and fro, on half of the default mesh.
+fn cycle(first: &[&str], direction: f64) -> Vec<StepRecord> {
+    let to = |sign: f64| format!("shear = {:?}\nshear_direction = {direction:?}", sign * 0.0017);
+    let path = [to(1.0), to(-1.0), to(1.0), to(-1.0)];
+    let path: Vec<&str> = first.iter().copied().chain(path.iter().map(String::as_str)).collect();
+    rows(&text(IDEAL, "0.3", 5, &path), &["mesh.surface_elements_per_contact_radius=10", "solver.tolerance=1e-5"])
+}
+
+/// A path that keeps to its direction has the forces of the x axis: the mesh is turned with it.
+#[test]
+fn a_turned_path_has_the_forces_of_the_x_axis() {
+    let along = cycle(&["indentation = 0.02"], 0.0);
+    let (peak, pressed) = (along.iter().fold(0.0, |most: f64, row| most.max(row.f_t)), last(&along, 0).f_n);
+    for direction in [17.0, 45.0, 90.0, 213.0] {
+        let turned = cycle(&["indentation = 0.02"], direction);
+        assert_eq!(turned.len(), along.len());
+        let (sin, cos) = f64::to_radians(direction).sin_cos();
+        for (row, other) in along.iter().zip(&turned) {
+            let (f_t, across) = (other.f_t * cos + other.f_t_y * sin, other.f_t_y * cos - other.f_t * sin);
+            let place = format!("{direction}, segment {}, {}", row.segment, row.delta_t);
+            // The whole and the half are solved to the tolerance.
+            assert!((f_t - row.f_t).abs() < 1e-3 * peak, "{place}: F_T {f_t} for {}", row.f_t);
+            assert!((other.f_n - row.f_n).abs() < 1e-3 * pressed, "{place}: F_N {} for {}", other.f_n, row.f_n);
+            assert!(across.abs() < 1e-6 * peak, "{place}: {across} across");
+        }
+    }
+}
+
+/// Any path that is turned about the normal has turned forces, and moments.
+#[test]
+fn what_is_turned_about_the_normal_turns_its_forces() {
+    let along = |direction: f64| {
+        let (sin, cos) = f64::to_radians(direction).sin_cos();
+        let turned = |[x, y]: [f64; 2]| [x * cos - y * sin, x * sin + y * cos];
+        let (first, second) = (turned([0.001, 0.0]), turned([0.0005, 0.0008]));
+        let path = [
+            format!("shear = {first:?}"),
+            format!("shear = {second:?}\nroll = {:?}", turned([0.004, -0.003])),
+            "twist = 0.01\nhold = \"normal-force\"".to_owned(),
+        ];
+        let path: Vec<&str> = std::iter::once("indentation = 0.01").chain(path.iter().map(String::as_str)).collect();
+        rows(&text(IDEAL, "0.3", 4, &path), &["solver.tolerance=1e-9"])
+    };
+    let ours = along(0.0);
+    let (force, direction) = (last(&ours, 0).f_n, 37.0);
+    let (sin, cos) = f64::to_radians(direction).sin_cos();
+    let back = |x: f64, y: f64| [x * cos + y * sin, y * cos - x * sin];
+    let theirs = along(direction);
+    assert_eq!(ours.len(), theirs.len());
+    for (one, other) in ours.iter().zip(&theirs) {
+        let ([f_t, f_t_y], [m_x, m_y]) = (back(other.f_t, other.f_t_y), back(other.m_roll_x, other.m_roll_y));
+        let [delta_t, delta_t_y] = back(other.delta_t_contact, other.delta_t_y_contact);
+        let pairs = [(f_t, one.f_t), (f_t_y, one.f_t_y), (m_x, one.m_roll_x), (m_y, one.m_roll_y), (other.m_twist, one.m_twist)];
+        let lengths = [(delta_t, one.delta_t_contact), (delta_t_y, one.delta_t_y_contact)];
+        assert!((other.f_n - one.f_n).abs() < 1e-6 * force);
+        assert!(pairs.iter().all(|(a, b)| (a - b).abs() < 1e-6 * force), "step {}: {pairs:?}", one.step);
+        assert!(lengths.iter().all(|(a, b)| (a - b).abs() < 1e-9), "step {}: {lengths:?}", one.step);
+    }
+    assert!(last(&ours, 3).m_twist > 1e-3 * force && last(&ours, 2).m_roll_y.abs() > 1e-4 * force);
+}
+
+/// The tables of the contact and the fields are in the axes of the case, however the mesh lies.
+#[test]
+fn tables_and_fields_of_a_turned_mesh_are_in_the_axes_of_the_case() {
+    let shear = "shear = 0.001\nshear_direction = 30.0";
+    let case = Case::parse(&text(IDEAL, "0.3", 4, &["indentation = 0.01", shear]), "case.toml", &[]).expect("a case");
+    let mut run = Simulation::new(&case).expect("a simulation");
+    run.run().expect("a run");
+    let end = *run.history().last().expect("rows");
+    let sum = |of: &dyn Fn(&ContactPoint) -> f64| run.contact().iter().map(of).sum::<f64>();
+    let [f_n, f_x, f_y] = [sum(&|p| p.pressure * p.area), -sum(&|p| p.traction_x * p.area), -sum(&|p| p.traction_y * p.area)];
+    assert!((f_n / end.f_n - 1.0).abs() < 1e-9 && (f_x - end.f_t).abs() < 1e-9 * f_n && (f_y - end.f_t_y).abs() < 1e-9 * f_n);
+    assert!((end.f_t_y / end.f_t - 30f64.to_radians().tan()).abs() < 1e-3);
+    let fields = run.fields().expect("fields").expect("a step");
+    let plate = fields.nodes.iter().zip(&fields.displacement).filter(|(x, _)| x[2] == 1.0);
+    assert!(plate.clone().count() > 10);
+    for (_, u) in plate {
+        assert!((u[0] - end.delta_t).abs() < 1e-12 && (u[1] - end.delta_t_y).abs() < 1e-12 && (u[2] + end.h).abs() < 1e-12);
+    }
+    // The same stresses as along x, turned: those along z, and what no axes change.
+    let case = Case::parse(&text(IDEAL, "0.3", 4, &["indentation = 0.01", "shear = [0.001, 1e-15]"]), "case.toml", &[]);
+    let mut straight = Simulation::new(&case.expect("a case")).expect("a simulation");
+    straight.run().expect("a run");
+    let there = straight.fields().expect("fields").expect("a step");
+    let [sin, cos] = [30f64.to_radians().sin(), 30f64.to_radians().cos()];
+    let most = there.mises.iter().fold(0.0, |most: f64, m| most.max(*m));
+    for (one, other) in there.stress.iter().zip(&fields.stress) {
+        let traction = [one[5] * cos - one[4] * sin, one[5] * sin + one[4] * cos];
+        assert!((one[2] - other[2]).abs() < 0.01 * most);
+        assert!((traction[0] - other[5]).abs() < 0.01 * most && (traction[1] - other[4]).abs() < 0.01 * most);
+    }
+}
+
+/// The mesh's own anisotropy in two cycles, on half of the default mesh, step by step: F_T and F_N
+/// are within 1 %. What is across is 0.5 % at 45 degrees, and 0.15 % on the default mesh (`benches/turning/axes.py`). With
 /// the default tolerance single steps after a turn would be off by 0.4 %.
 #[test]
 fn turned_cycles_have_the_forces_of_the_x_axis() {
-    let cycle = |direction: f64| {
-        let to = |sign: f64| format!("shear = {:?}\nshear_direction = {direction:?}", sign * 0.0017);
-        let path = [to(1.0), to(-1.0), to(1.0), to(-1.0)];
-        let path: Vec<&str> = std::iter::once("indentation = 0.02").chain(path.iter().map(String::as_str)).collect();
-        rows(&text(IDEAL, "0.3", 5, &path), &["mesh.surface_elements_per_contact_radius=10", "solver.tolerance=1e-5"])
-    };
-    let along = cycle(0.0);
+    let along = cycle(&["indentation = 0.02", LAID_ALONG_X], 0.0);
     let (peak, pressed) = (along.iter().fold(0.0, |most: f64, row| most.max(row.f_t)), last(&along, 0).f_n);
     for direction in [17.0, 45.0, 90.0] {
-        let turned = cycle(direction);
+        let turned = cycle(&["indentation = 0.02", LAID_ALONG_X], direction);
         assert_eq!(turned.len(), along.len());
         assert_energy(&turned, 0.005, "a cycle");
         let (sin, cos) = f64::to_radians(direction).sin_cos();
         for (row, other) in along.iter().zip(&turned) {
-            assert!((row.delta_t - (other.delta_t * cos + other.delta_t_y * sin)).abs() < 1e-9, "another step");
+            assert!((row.delta_t - (other.delta_t * cos + other.delta_t_y * sin)).abs() < 2e-9, "another step");
             let (f_t, across) = (other.f_t * cos + other.f_t_y * sin, other.f_t_y * cos - other.f_t * sin);
             let place = format!("{direction}, segment {}, {}", row.segment, row.delta_t);
             assert!((f_t - row.f_t).abs() < 0.01 * peak, "{place}: F_T {f_t} for {}", row.f_t);

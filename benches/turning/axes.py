@@ -2,6 +2,11 @@
 """The reference case, sheared along turned axes: what the mesh itself adds to the forces.
 
     python3 benches/turning/axes.py OUT [--path main|cycle] [--meshes 5,10] [--directions 0,17,30,45,90] [--tolerance 1e-5]
+        [--laid x|path]
+
+The mesh of a whole sphere is laid along the first shear of the path, so that a path which keeps to its direction has the forces
+of the x axis (`--laid path`). To see what the mesh adds to a path that leaves its first direction, all paths here begin with a
+shear along x by 1e-9 R.
 
 `main` is the main job, a shear to full slip; `cycle` two cycles and a half at 60 % of the slip. Both are on the mesh of the
 whole, against the same along x on the mesh of the half, step by step. (0 is the whole mesh along x: 1e-9 degrees.) The table
@@ -24,6 +29,8 @@ def along(args, elements, direction):
     """(segment, way along the path, F_N, F_T along and across it) of each step from the end of the press on; none: half."""
     turned = [] if direction is None else [f"shear_direction = {direction or 1e-9!r}"]
     press = [["indentation = 0.02"]]
+    if args.laid == "x":
+        press.append(["shear = 1e-9"])
     if args.path == "main":
         path = press + [['shear = "full-slip"'] + turned]
     else:
@@ -32,12 +39,12 @@ def along(args, elements, direction):
     mesh = f"elements_per_contact_radius = {elements}\nsurface_elements_per_contact_radius = {surface}"
     text = case(IDEAL, 0.3, mesh, path).replace("[solver]", f"[solver]\ntolerance = {args.tolerance}{args.solver}")
     way = "half" if direction is None else f"{direction:g}"
-    label = f"{args.path}-{elements}-{surface}-{way}-{args.tolerance:g}"
+    label = f"{args.laid}-{args.path}-{elements}-{surface}-{way}-{args.tolerance:g}"
     history = rows(args, label, text)
     angle = math.radians(direction or 0.0)
     cos, sin = math.cos(angle), math.sin(angle)
     both = lambda x, y: (x * cos + y * sin, y * cos - x * sin)
-    last = max(i for i, row in enumerate(history) if row["segment"] == 0)
+    last = max(i for i, row in enumerate(history) if row["segment"] == len(press) - 1)
     found = []
     for row in history[last:]:
         way, _ = both(row["delta_T"], row["delta_T_y"])
@@ -60,6 +67,7 @@ def there(found, i, way):
 def main():
     parser = arguments(__doc__, out="needed")
     parser.add_argument("--path", choices=["main", "cycle"], default="cycle")
+    parser.add_argument("--laid", choices=["x", "path"], default="x")
     parser.add_argument("--meshes", default="5,10")
     parser.add_argument("--directions", default="0,17,30,45,90")
     parser.add_argument("--tolerance", type=float, default=1e-5)

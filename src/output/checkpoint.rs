@@ -25,7 +25,7 @@ use crate::simulation::zone::Zone;
 const NAME: &str = "asperity checkpoint";
 /// To be raised with every change of what is stored, and of the order and the steps in which a run
 /// goes on from it. The version of the program is compared as well.
-const FORMAT: u32 = 21;
+const FORMAT: u32 = 22;
 
 /// An unfinished run: its case, what it depends on, and what it has written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

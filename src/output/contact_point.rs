@@ -25,24 +25,14 @@ pub enum Half {
     Both,
     /// The other one, Y < 0: the mirror image of the meshed node of the same number.
     Mirrored,
-    /// All of the sphere is meshed, and no point has an image.
+    /// All of the sphere is meshed, and no point has an image; none need lie on Y = 0.
     Whole,
 }
 
 impl Half {
-    /// Whether a point at Y, on this half, lies on what is shown as the meshed or the mirrored one.
-    pub fn is_shown_as(self, shown: Self, y: f64) -> bool {
-        match self {
-            Self::Both => true,
-            Self::Whole => {
-                if shown == Self::Meshed {
-                    y >= 0.0
-                } else {
-                    y <= 0.0
-                }
-            }
-            half => half == shown,
-        }
+    /// Whether a point on this half takes part in what is shown of the meshed or the mirrored one.
+    pub fn is_shown_as(self, shown: Self) -> bool {
+        matches!(self, Self::Both | Self::Whole) || self == shown
     }
 }
 

@@ -22,9 +22,8 @@ pub fn write_fields(
     units: &Units,
 ) -> Result<(), OutputError> {
     let (nodes, space) = (mesh.nodes.len(), Space::new(mesh));
-    let scaled = |x: &[f64; 3]| x.map(|x| x * units.radius);
-    let positions: Vec<[f64; 3]> = space.vectors(&mesh.nodes).iter().map(scaled).collect();
-    let moved: Vec<[f64; 3]> = space.vectors(displacement.as_chunks::<3>().0).iter().map(scaled).collect();
+    let in_units = |vectors: &[[f64; 3]]| -> Vec<[f64; 3]> { space.vectors(vectors).iter().map(|x| units.vector(x)).collect() };
+    let (positions, moved) = (in_units(&mesh.nodes), in_units(displacement.as_chunks::<3>().0));
 
     let mut pressure = vec![0.0; positions.len()];
     let mut traction = vec![[0.0; 3]; positions.len()];
@@ -46,8 +45,7 @@ pub fn write_fields(
         };
     }
 
-    let stress: Vec<[f64; 6]> =
-        stresses_in_space(mesh, &fields.stress).iter().map(|stress| stress.map(|s| s * units.youngs_modulus)).collect();
+    let stress: Vec<[f64; 6]> = stresses_in_space(mesh, &fields.stress).iter().map(|stress| units.stress(stress)).collect();
     let point_fields = [
         Field::vector("displacement", &moved),
         Field::scalar("contact_pressure", pressure),
@@ -81,6 +79,7 @@ pub fn mises(stress: &[f64; 6]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::Orientation;
     use crate::mesh::brick::brick;
 
     #[test]
@@ -90,7 +89,7 @@ mod tests {
         let mesh = brick(2, 1, 1, [2.0, 1.0, 1.0]).unwrap();
         let displacement = vec![0.01; 3 * mesh.nodes.len()];
         let fields = CaseFields { stress: vec![[1e-3; 6], [0.0; 6]], alpha: vec![0.02, 0.0], max_alpha: 0.03 };
-        let units = Units { radius: 2.0, youngs_modulus: 100.0, bodies: 1.0 };
+        let units = Units { radius: 2.0, youngs_modulus: 100.0, bodies: 1.0, orientation: Orientation::ALONG_X };
         let mut point = ContactPoint {
             point: 3,
             reference_x: 0.0,

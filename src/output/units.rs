@@ -2,7 +2,7 @@
 //! user's units and the whole sphere.
 
 use super::{ContactPoint, ContactStatus, Half, StepRecord};
-use crate::case::{self, Case, Scaled};
+use crate::case::{self, Case, Orientation, Scaled};
 use crate::contact::coulomb::Status;
 use crate::simulation::record;
 
@@ -15,12 +15,19 @@ pub struct Units {
     pub youngs_modulus: f64,
     /// Number of bodies that deform (see [`Case::bodies`]).
     pub bodies: f64,
+    /// How the mesh lies in the user's axes.
+    pub orientation: Orientation,
 }
 
 impl Units {
     /// Those of a case in the user's units.
     pub fn of(case: &Case) -> Self {
-        Self { radius: case.sphere.radius, youngs_modulus: case.material.youngs_modulus, bodies: case.bodies() }
+        Self {
+            radius: case.sphere.radius,
+            youngs_modulus: case.material.youngs_modulus,
+            bodies: case.bodies(),
+            orientation: case.orientation(),
+        }
     }
 
     /// Unit of force, E R^2.
@@ -32,6 +39,17 @@ impl Units {
     pub fn energy(&self) -> f64 {
         self.force() * self.radius
     }
+
+    /// A position or a displacement, scaled and in the mesh's axes, in the user's.
+    pub fn vector(&self, scaled: &[f64; 3]) -> [f64; 3] {
+        let [x, y] = self.orientation.to_user([scaled[0], scaled[1]]);
+        [x, y, scaled[2]].map(|x| x * self.radius)
+    }
+
+    /// A stress xx, yy, zz, xy, yz, zx likewise.
+    pub fn stress(&self, scaled: &[f64; 6]) -> [f64; 6] {
+        self.orientation.tensor_to_user(*scaled).map(|s| s * self.youngs_modulus)
+    }
 }
 
 impl Scaled<StepRecord> {
@@ -41,11 +59,17 @@ impl Scaled<StepRecord> {
         let scaled = &self.0;
         let (length, force, energy) = (units.radius, units.force(), units.bodies * units.energy());
         let travel = units.bodies * length;
+        let pair = |x: f64, y: f64, unit: f64| units.orientation.to_user([x, y]).map(|part| part * unit);
+        let [delta_t, delta_t_y] = pair(scaled.delta_t, scaled.delta_t_y, travel);
+        let [delta_t_contact, delta_t_y_contact] = pair(scaled.delta_t_contact, scaled.delta_t_y_contact, travel);
+        let [f_t, f_t_y] = pair(scaled.f_t, scaled.f_t_y, force);
+        let [roll_x, roll_y] = pair(scaled.roll_x, scaled.roll_y, units.bodies);
+        let [m_roll_x, m_roll_y] = pair(scaled.m_roll_x, scaled.m_roll_y, force * length);
         StepRecord {
             h: scaled.h * travel,
-            delta_t: scaled.delta_t * travel,
+            delta_t,
             f_n: scaled.f_n * force,
-            f_t: scaled.f_t * force,
+            f_t,
             a: scaled.a * length,
             stick_radius: scaled.stick_radius * length,
             a_gap: scaled.a_gap * length,
@@ -58,21 +82,22 @@ impl Scaled<StepRecord> {
             work_plastic_opponent: scaled.work_plastic_opponent * energy,
             curvature: scaled.curvature / length,
             k_t: scaled.k_t.map(|stiffness| stiffness * force / travel),
+            // It is made from rows in the user's axes.
             f_t_limit: scaled.f_t_limit.map(|limit| limit * force),
             f_n_limit: scaled.f_n_limit.map(|limit| limit * force),
             f_t_error: scaled.f_t_error.map(|error| error * force),
             f_n_error: scaled.f_n_error.map(|error| error * force),
-            delta_t_y: scaled.delta_t_y * travel,
-            f_t_y: scaled.f_t_y * force,
+            delta_t_y,
+            f_t_y,
             twist: scaled.twist * units.bodies,
-            roll_x: scaled.roll_x * units.bodies,
-            roll_y: scaled.roll_y * units.bodies,
+            roll_x,
+            roll_y,
             m_twist: scaled.m_twist * force * length,
-            m_roll_x: scaled.m_roll_x * force * length,
-            m_roll_y: scaled.m_roll_y * force * length,
+            m_roll_x,
+            m_roll_y,
             h_contact: scaled.h_contact * travel,
-            delta_t_contact: scaled.delta_t_contact * travel,
-            delta_t_y_contact: scaled.delta_t_y_contact * travel,
+            delta_t_contact,
+            delta_t_y_contact,
             // Counts, indices and ratios have no unit.
             ..*scaled
         }
@@ -84,6 +109,8 @@ impl ContactPoint {
     /// reference area, exerted by the plane on the sphere: the shear traction resists the motion. A
     /// point without area has none. A point on the symmetry plane has its area of both halves.
     pub fn in_units(scaled: &record::ContactPoint, units: &Units) -> Self {
+        let [reference, current] = [&scaled.reference, &scaled.position].map(|x| units.vector(x));
+        let [force_x, force_y] = units.orientation.to_user([scaled.force[0], scaled.force[1]]);
         let length = units.radius;
         let per_area = if scaled.area > 0.0 { units.youngs_modulus / scaled.area } else { 0.0 };
         let (halves, half) = match (scaled.on_symmetry_plane, scaled.is_of_whole) {
@@ -93,14 +120,14 @@ impl ContactPoint {
         };
         Self {
             point: scaled.node,
-            reference_x: scaled.reference[0] * length,
-            reference_y: scaled.reference[1] * length,
-            current_x: scaled.position[0] * length,
-            current_y: scaled.position[1] * length,
+            reference_x: reference[0],
+            reference_y: reference[1],
+            current_x: current[0],
+            current_y: current[1],
             gap: scaled.gap * length,
             pressure: scaled.force[2] * per_area,
-            traction_x: scaled.force[0] * per_area,
-            traction_y: scaled.force[1] * per_area,
+            traction_x: force_x * per_area,
+            traction_y: force_y * per_area,
             area: halves * scaled.area * length * length,
             status: scaled.status.into(),
             half,
@@ -134,7 +161,7 @@ pub(super) fn coefficient(friction: case::Friction) -> Option<f64> {
 mod tests {
     use super::*;
 
-    const UNITS: Units = Units { radius: 2.0, youngs_modulus: 100.0, bodies: 1.0 };
+    const UNITS: Units = Units { radius: 2.0, youngs_modulus: 100.0, bodies: 1.0, orientation: Orientation::ALONG_X };
 
     #[test]
     fn every_quantity_has_its_own_unit() {

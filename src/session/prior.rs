@@ -100,7 +100,8 @@ fn extendable(out: &OutputDirectory, case: &Case, summary: &Summary) -> Result<P
     checkpoint.check_files(out, case)?;
     let mut shorter = case.clone();
     shorter.path.truncate(segments);
-    if (shorter.is_even(), shorter.image()) != (case.is_even(), case.image()) || shorter.moves_along_x() != case.moves_along_x() {
+    let meshed = |case: &Case| (case.is_even(), case.image(), case.orientation(), case.moves_along_x());
+    if meshed(&shorter) != meshed(case) {
         let why = "the longer path leaves the x axis, or turns the sphere, and from the beginning it would be simulated otherwise, \
                    mostly on the whole sphere. Compute it in another directory, or with --force";
         return Err(NotExtendable::Why(why.to_owned()));

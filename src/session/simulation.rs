@@ -224,7 +224,7 @@ impl Simulation {
     /// # Errors
     /// [`SessionError::Simulation`] if the device fails.
     pub fn fields(&mut self) -> Result<Option<StepFields>, SessionError> {
-        let Units { radius, youngs_modulus, .. } = Units::of(&self.case);
+        let units = Units::of(&self.case);
         let follower = match &mut self.stage {
             Stage::Running(running) => &mut running.follower,
             Stage::Ended(_, Some(follower)) => follower.as_mut(),
@@ -234,9 +234,8 @@ impl Simulation {
         let Some(last) = follower.last() else { return Ok(None) };
         let mesh = &follower.problem().model.mesh;
         let space = Space::new(mesh);
-        let length = |x: &[f64; 3]| x.map(|x| x * radius);
-        let stress: Vec<[f64; 6]> =
-            stresses_in_space(mesh, &fields.stress).iter().map(|stress| stress.map(|s| s * youngs_modulus)).collect();
+        let length = |x: &[f64; 3]| units.vector(x);
+        let stress: Vec<[f64; 6]> = stresses_in_space(mesh, &fields.stress).iter().map(|stress| units.stress(stress)).collect();
         Ok(Some(StepFields {
             nodes: space.vectors(&mesh.nodes).iter().map(length).collect(),
             elements: space.elements(),

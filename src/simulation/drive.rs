@@ -192,7 +192,7 @@ impl<'a> Drive<'a> {
             observer.step(&mut self.view()).map_err(SimulationError::Observer)?;
             self.place.begun = true;
         }
-        let path = &self.problem.case.0.path;
+        let path = self.problem.path();
         while let Some(segment) = path.get(self.place.segment) {
             let start = match self.place.start {
                 Some(start) => start,

@@ -6,7 +6,7 @@ use super::SimulationError;
 use super::path::Resolution;
 use super::zone::Zone;
 use crate::analytical::predicted_contact_radius;
-use crate::case::{self, Case, Equator, Opponent, Scaled};
+use crate::case::{self, Case, Equator, Opponent, Scaled, Segment};
 use crate::compute::CaseModel;
 use crate::contact::coulomb::Friction;
 use crate::contact::rigid::Rigid;
@@ -276,6 +276,13 @@ impl Problem {
     /// those of one.
     pub fn bodies(&self) -> f64 {
         self.case.0.bodies()
+    }
+
+    /// The scaled path in the mesh's axes.
+    pub fn path(&self) -> Vec<Segment> {
+        let case = &self.case.0;
+        let orientation = case.orientation();
+        case.path.iter().map(|&segment| orientation.segment_to_mesh(segment)).collect()
     }
 
     /// The fine zone that a case (in the user's units) asks for.

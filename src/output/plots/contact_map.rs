@@ -202,12 +202,19 @@ impl Map<'_> {
         for (half, upper) in [(Half::Meshed, true), (Half::Mirrored, false)] {
             let own: Vec<&ContactPoint> = points
                 .iter()
-                .filter(|point| point.half.is_shown_as(half, point.reference_y) && self.window.is_near(point))
+                .filter(|point| point.half.is_shown_as(half) && self.window.is_near(point))
                 .filter(|point| point.current_x.is_finite() && point.current_y.is_finite())
                 .collect();
             let field = Field::new(own.iter().map(|point| self.pixel(point.current_x, point.current_y)).collect());
+            // Of a whole sphere half of what is interpolated is shown.
+            let middle = self.pixel(0.0, 0.0).1;
+            let (from, to) = match (own.iter().any(|point| point.half == Half::Whole), upper) {
+                (false, _) => (top, top + side),
+                (true, true) => (top, middle),
+                (true, false) => (middle, top + side),
+            };
             let region = |values: &[f64], level: f64, ink: Paint| {
-                let inside = |points: &Vec<Pixel>| clipped(points, [(left, top), (left + side, top + side)]);
+                let inside = |points: &Vec<Pixel>| clipped(points, [(left, from), (left + side, to)]);
                 area.area(&field.at_least(values, level).iter().map(inside).collect::<Vec<_>>(), ink)
             };
             // What is open has no value: the border is halfway to it.
