@@ -144,8 +144,8 @@ fn along_x_both_images_say_the_same() {
     }
 }
 
-/// The mesh lies along the first shear, so that nothing is across; after a first shear along x there
-/// is the mesh's own anisotropy, 0.2 %.
+/// The mesh lies along the first shear, so that nothing is across; after a first shear along x
+/// there is the mesh's own anisotropy, 0.2 %.
 #[test]
 fn turned_axes_have_the_forces_of_the_x_axis() {
     turned_axes(&["indentation = 0.02"], 1e-4);

@@ -63,8 +63,8 @@ fn at(rows: &[StepRecord], direction: f64, distance: f64) -> [f64; 3] {
     std::array::from_fn(|i| from[i] + (to[i] - from[i]) * (distance - a) / (b - a))
 }
 
-/// The mesh lies along the first shear of a path. After a first shear along x, as short as this one,
-/// all others meet the mesh as it lies then.
+/// The mesh lies along the first shear of a path: after one along x, as short as this, all others
+/// meet a mesh along x.
 const LAID_ALONG_X: &str = "shear = 1e-9";
 
 /// The mesh's own anisotropy, which is met by a path that leaves its first direction: on eight
@@ -181,8 +181,9 @@ fn tables_and_fields_of_a_turned_mesh_are_in_the_axes_of_the_case() {
 }
 
 /// The mesh's own anisotropy in two cycles, on half of the default mesh, step by step: F_T and F_N
-/// are within 1 %. What is across is 0.5 % at 45 degrees, and 0.15 % on the default mesh (`benches/turning/axes.py`). With
-/// the default tolerance single steps after a turn would be off by 0.4 %.
+/// are within 1 %. What is across is 0.5 % at 45 degrees, and 0.15 % on the default mesh
+/// (`benches/turning/axes.py`). With the default tolerance single steps after a turn would be off
+/// by 0.4 %.
 #[test]
 fn turned_cycles_have_the_forces_of_the_x_axis() {
     let along = cycle(&["indentation = 0.02", LAID_ALONG_X], 0.0);

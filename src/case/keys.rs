@@ -103,7 +103,7 @@ pub const TABLES: [(&str, &str); 10] = [
     ("mesh", "how finely the bodies are meshed; every key is optional"),
     ("solver", "how the equations are solved; every key is optional"),
     ("output", "what is written besides history and summary; every key is optional"),
-    ("units", "names of the units on the axes of pictures; they change no number, every key is optional"),
+    ("units", "units named here replace the normalised axes of pictures; results do not change. Every key is optional"),
     ("path", "the segments, followed in order; the first one presses"),
 ];
 
@@ -506,7 +506,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true, or a share between 0 and 1",
-        meaning: "unload until contact is lost, or until F_N has fallen to this share of its value at the start of the segment",
+        meaning: "unload until contact is lost, or until F_N has fallen to this share of its value at the start of the segment; delta_T and the angles do not change",
         example: "true",
         ..key("path", "release", ShareOrTrue, Optional("the segment presses or shears"))
     },
