@@ -1,10 +1,10 @@
 //! Segments of the path in which the plate moves in any of its six degrees of freedom.
 
+use super::bodies::{Friction, Sphere};
 use super::error::CaseError;
-use super::path::{Hold, Lengths, Motion, Segment, ShearTarget, State};
-use super::path::{displacement, read_full_slip, read_hold, read_indentation, unit};
 use super::reader::{Field, Reader};
-use super::{Friction, Sphere};
+use super::segment::{Hold, Motion, Segment, ShearTarget, unit};
+use super::targets::{Lengths, State, displacement, read_full_slip, read_hold, read_indentation};
 
 /// Largest angle of a twist, in rad, and of a roll, by which the contact travels along the sphere.
 const MAX_TWIST: f64 = 100.0;
