@@ -18,8 +18,8 @@ use faer::{Accum, Mat, MatMut, Par};
 use super::bsr::{BlockMatrix, Pattern, Widen};
 use super::dissection::{Dissection, Part};
 use super::fixed::Fixed;
+use super::outcome::{LinalgError, SolveReport};
 use super::vector::norm;
-use super::{LinalgError, SolveReport};
 use crate::real::Real;
 
 /// Memory the factors may take by default, in bytes.
