@@ -8,7 +8,7 @@
 use std::path::Path;
 
 use asperity::case::Case;
-use asperity::internals::compute::Outcome;
+use asperity::internals::compute::Evaluated;
 use asperity::internals::compute::cpu::Cpu;
 use asperity::internals::compute::handle::CaseHandle;
 use asperity::internals::linalg::{BlockMatrix, Hierarchy, LinearSolver, Pattern, SolverKind};
@@ -101,7 +101,7 @@ fn phases(criterion: &mut Criterion<Processor>, elements_per_contact_radius: usi
     apply_contact(&mut matrix, &mesh, &trial.rows);
     let mut rhs = vec![0.0; trial.u.len()];
     right_hand_side(&trial, &mesh, &boundary, &mut rhs);
-    if outcome != Outcome::Valid {
+    if outcome != Evaluated::Valid {
         return Err(format!("the iteration to be timed cannot be evaluated: {outcome:?}").into());
     }
 

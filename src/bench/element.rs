@@ -13,7 +13,7 @@ use super::{BenchError, Options, Pools};
 use crate::compute::cpu::Cpu;
 use crate::compute::gpu::{DeviceReal, Evaluation, Gpu, GpuContext};
 use crate::compute::handle::at_contact;
-use crate::compute::{Answer, Blocks, Call, CaseModel, Compute, ComputeError, Outcome};
+use crate::compute::{Answer, Blocks, Call, CaseModel, Compute, ComputeError, Evaluated};
 use crate::memory;
 use crate::mesh::Mesh;
 
@@ -90,9 +90,9 @@ impl Calls {
     }
 }
 
-fn valid(outcome: Outcome) -> Result<(), ComputeError> {
+fn valid(outcome: Evaluated) -> Result<(), ComputeError> {
     match outcome {
-        Outcome::Valid => Ok(()),
+        Evaluated::Valid => Ok(()),
         outcome => Err(ComputeError::Device(format!("the bench's displacement was refused: {outcome:?}"))),
     }
 }

@@ -3,7 +3,7 @@ use super::report::On;
 use super::timing::Patience;
 use super::traffic::Sizes;
 use super::*;
-use crate::compute::Outcome;
+use crate::compute::Evaluated;
 use crate::compute::cpu::Cpu;
 use crate::compute::handle::at;
 use crate::material::{FlowStress, return_mapping};
@@ -42,7 +42,7 @@ fn every_quadrature_point_of_a_batch_yields() {
         let mut before = at(&mut cpu, case).state().unwrap();
         for strain in [0.02, 0.0201] {
             let (_, outcome) = at(&mut cpu, case).commit(&squeezed(&model.mesh, strain)).unwrap();
-            assert_eq!(outcome, Outcome::Valid);
+            assert_eq!(outcome, Evaluated::Valid);
             let after = at(&mut cpu, case).state().unwrap();
             let alphas = |s: &crate::compute::CaseState| s.points.iter().flatten().map(|p| p.alpha).collect::<Vec<_>>();
             assert!(alphas(&before).iter().zip(alphas(&after)).all(|(a, b)| b > *a), "case {case} at {strain}");

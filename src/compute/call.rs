@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use super::linear::{Solved, System};
-use super::{CaseFields, CaseModel, CaseState, ComputeError, Energies, Outcome, iterate};
+use super::{CaseFields, CaseModel, CaseState, ComputeError, Energies, Evaluated, iterate};
 use crate::contact::coulomb::Rows;
 use crate::real::Real;
 
@@ -66,15 +66,15 @@ pub enum Answer {
         /// dW/du, three a node.
         force: Vec<f64>,
         /// How it went.
-        outcome: Outcome,
+        outcome: Evaluated,
     },
     /// Of [`Call::Tangent`].
     Tangent {
         /// Blocks d f_i / d u_j in the order of [`crate::mesh::pattern::Pattern`], row-major. They
-        /// mean nothing if the outcome is not [`Outcome::Valid`].
+        /// mean nothing if the outcome is not [`Evaluated::Valid`].
         blocks: Blocks,
         /// How it went.
-        outcome: Outcome,
+        outcome: Evaluated,
     },
     /// Of [`Call::Contact`]: the rows of each contact node.
     Contact(Vec<Rows<f64>>),
@@ -87,7 +87,7 @@ pub enum Answer {
         /// Energies of the new committed state.
         energies: Energies,
         /// How it went; an invalid state is not committed.
-        outcome: Outcome,
+        outcome: Evaluated,
     },
     /// Of [`Call::Fields`].
     Fields(CaseFields),

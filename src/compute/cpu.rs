@@ -9,7 +9,7 @@ use super::gather::GatherPlan;
 use super::linear::Solved;
 use super::sweep::{Keep, Sweep};
 use super::{
-    About, Answer, Blocks, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Fault, Outcome,
+    About, Answer, Blocks, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Evaluated, Fault,
 };
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, contact_rows};
 use crate::contact::plane::{gap, slip};
@@ -228,7 +228,7 @@ impl<R: Real, T: Real> Case<R, T> {
         (plan, sweep, tangents): (&GatherPlan, &Sweep, &mut [Held<T>]),
         displacement: &[f64],
         blocks: &mut [[B; 9]],
-    ) -> Outcome {
+    ) -> Evaluated {
         let mut rows = block_rows(plan, blocks);
         for (elements, complete) in sweep.waves() {
             let slot = sweep.slot(elements.start);
@@ -250,7 +250,7 @@ impl<R: Real, T: Real> Case<R, T> {
                     out.reach = case.reach[e].min(case.size[e] * margin);
                     Ok(())
                 });
-            if outcome != Outcome::Valid {
+            if outcome != Evaluated::Valid {
                 return outcome;
             }
             let mut complete: Vec<_> = complete.iter().map(|&node| (node, std::mem::take(&mut rows[node as usize]))).collect();
@@ -259,7 +259,7 @@ impl<R: Real, T: Real> Case<R, T> {
                 gather_row(plan, &self.mesh, *node as usize, |element| &tangents[sweep.slot(element)].tangent, row);
             });
         }
-        Outcome::Valid
+        Evaluated::Valid
     }
 
     /// Evaluates `f` on the elements from `first` on into `out`, so many at a time in each thread;
@@ -271,7 +271,7 @@ impl<R: Real, T: Real> Case<R, T> {
         displacement: &[f64],
         out: &mut [O],
         f: impl Fn(&Self, usize, &Nodal<N>, &Nodal<N>, &mut O) -> Result<(), Invalid> + Sync,
-    ) -> Outcome {
+    ) -> Evaluated {
         out.par_chunks_mut(at_a_time)
             .enumerate()
             .map(|(chunk, out)| {
@@ -291,7 +291,7 @@ impl<R: Real, T: Real> Case<R, T> {
                     (x, y) => x.or(y),
                 },
             )
-            .map_or(Outcome::Valid, |(element, invalid)| Outcome::Invalid(Fault::of(element, invalid)))
+            .map_or(Evaluated::Valid, |(element, invalid)| Evaluated::Invalid(Fault::of(element, invalid)))
     }
 }
 
@@ -415,7 +415,7 @@ impl<R: Real, T: Real> Cpu<R, T> {
             *out = hex8::update(&case.geometry[e], case.material(e), state, start, committed, increment)?;
             Ok(())
         });
-        if outcome == Outcome::Valid {
+        if outcome == Evaluated::Valid {
             let case = &mut self.cases[index];
             let opponent = case.opponent.0;
             for (e, ((state, start), (next, elastic))) in case.state.iter_mut().zip(&mut case.start).zip(&self.next).enumerate() {

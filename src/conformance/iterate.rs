@@ -8,7 +8,7 @@ use crate::compute::gpu::{Gpu, GpuContext};
 use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::{Ask, Begin, Correct, Corrected, From, Keeps, Plate, Reading, Reply, Request};
 use crate::compute::linear::Ended;
-use crate::compute::{Answer, Call, CaseModel, Compute, Fault, Outcome};
+use crate::compute::{Answer, Call, CaseModel, Compute, Evaluated, Fault};
 use crate::contact::coulomb::{Friction, Status};
 use crate::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
 use crate::material::{Elasticity, FlowStress, Material};
@@ -128,7 +128,7 @@ fn on_host(pressed: &mut Pressed, case: usize, u: &[f64], h: f64, control: &Cont
     trial.h = h;
     let mut handle = CaseHandle { backend: &mut pressed.cpu, case };
     let outcome = trial.evaluate(&mut handle, &boundary, control, &mut PhaseTimes::default()).unwrap();
-    assert_eq!(outcome, Outcome::Valid);
+    assert_eq!(outcome, Evaluated::Valid);
     (trial, boundary)
 }
 
@@ -186,7 +186,7 @@ fn a_trial_reads_so_on(mut pressed: Pressed) {
             ask(&mut pressed.gpu, &[(case, false, plate(&control), Ask::Give(far))]);
             let tried = reading(&ask(&mut pressed.gpu, &[(case, false, plate(&control), Ask::Try(1.0, 0.0))])[0]);
             assert!(
-                matches!(tried.outcome, Outcome::Invalid(Fault::Inverted { .. })) && tried.merit == f64::INFINITY,
+                matches!(tried.outcome, Evaluated::Invalid(Fault::Inverted { .. })) && tried.merit == f64::INFINITY,
                 "{tried:?}"
             );
         }
@@ -221,7 +221,7 @@ fn a_correction_solves_it_on(mut pressed: Pressed) {
             let begun = reading(&ask(&mut pressed.gpu, &[(case, false, plate(&control), begin(&mesh))])[0]);
             let asked = correct(1e-4, begun.plate_force);
             let found = corrected(&ask(&mut pressed.gpu, &[(case, false, plate(&control), asked)])[0]);
-            assert_eq!((found.tangent, found.report.ended), (Outcome::Valid, Ended::Converged));
+            assert_eq!((found.tangent, found.report.ended), (Evaluated::Valid, Ended::Converged));
             // The whole correction becomes the iterate, so that it can be read.
             let brought = ask(&mut pressed.gpu, &[(case, true, plate(&control), Ask::Bring)]).remove(0);
             let Reply::Vectors(vectors) = brought else { panic!("{brought:?}") };

@@ -6,7 +6,7 @@ use super::kernels::down_to_one_element;
 use crate::compute::cpu::Cpu;
 use crate::compute::gpu::{DeviceReal, Gpu, GpuContext};
 use crate::compute::linear::{self, Ended, Side, SideReport, Solved};
-use crate::compute::{Answer, Call, CaseModel, Compute, Outcome};
+use crate::compute::{Answer, Call, CaseModel, Compute, Evaluated};
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, Status, contact_rows};
 use crate::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
 use crate::material::{Elasticity, FlowStress, Material};
@@ -165,7 +165,7 @@ pub fn solve(backend: &mut dyn Compute, systems: &[(usize, &System)], tolerance:
     let one = |&(case, system): &(usize, &System)| (case, asked(system, &[(tolerance, zeros(system))], 2, false));
     let answers = solved(backend, systems.iter().map(one).collect());
     let solution = |mut solved: Solved| {
-        assert_eq!((solved.outcome, solved.solutions.len()), (Outcome::Valid, 1));
+        assert_eq!((solved.outcome, solved.solutions.len()), (Evaluated::Valid, 1));
         let solution = solved.solutions.remove(0);
         (solution.x, solution.report)
     };

@@ -10,7 +10,7 @@ use super::pose::{CENTRE, Pose};
 use super::{Control, Worst};
 use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::{missing_weight, prescribed};
-use crate::compute::{ComputeError, Fault, Outcome};
+use crate::compute::{ComputeError, Evaluated, Fault};
 use crate::contact::coulomb::{Friction, Point, Rows, Status, contact_rows};
 use crate::contact::frame::ContactFrame;
 use crate::linalg::bsr::BlockMatrix;
@@ -131,11 +131,11 @@ impl Trial {
         boundary: &Boundary,
         control: &Control,
         times: &mut PhaseTimes,
-    ) -> Result<Outcome, ComputeError> {
+    ) -> Result<Evaluated, ComputeError> {
         let mut lap = Lap::start();
         let outcome = case.internal_force(&self.u, &mut self.force)?;
         lap.end(times, Phase::Force);
-        if outcome != Outcome::Valid {
+        if outcome != Evaluated::Valid {
             self.merit = f64::INFINITY;
             return Ok(outcome);
         }
@@ -150,7 +150,7 @@ impl Trial {
         boundary: &Boundary,
         control: &Control,
         times: &mut PhaseTimes,
-    ) -> Result<Outcome, ComputeError> {
+    ) -> Result<Evaluated, ComputeError> {
         let mut lap = Lap::start();
         let mesh = case.model().mesh.clone();
         boundary.opponent.meet(self, case, boundary)?;
@@ -162,15 +162,15 @@ impl Trial {
     /// Whether all numbers are that decide on the trial or are recorded of it. The forces at points
     /// in contact are looked at one by one: where contact prescribes displacements, they are in no
     /// residual.
-    fn finite(&self, mesh: &Mesh) -> Outcome {
+    fn finite(&self, mesh: &Mesh) -> Evaluated {
         let at_contact = mesh.contact_nodes.iter().flat_map(|&n| &self.force[3 * n as usize..3 * n as usize + 3]);
         let mut decisive = [self.merit, self.force_scale, self.plate_force].into_iter().chain(at_contact.copied());
         if decisive.all(f64::is_finite) {
-            return Outcome::Valid;
+            return Evaluated::Valid;
         }
         let first = |numbers: &[f64]| numbers.iter().position(|x| !x.is_finite());
         let at = first(&self.residual).or_else(|| first(&self.force)).map(|i| (i / 3, i % 3));
-        Outcome::Invalid(Fault::Residual { at })
+        Evaluated::Invalid(Fault::Residual { at })
     }
 
     /// Internal force at a node.

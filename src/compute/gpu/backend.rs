@@ -21,7 +21,7 @@ use crate::compute::handle::{at, at_contact};
 use crate::compute::iterate::Keeps;
 use crate::compute::linear::{Solved, System};
 use crate::compute::{
-    About, Answer, Blocks, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Outcome,
+    About, Answer, Blocks, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Evaluated,
 };
 use crate::contact::coulomb::{CONTACT_WEIGHT, Rows};
 use crate::contact::plane::slip;
@@ -190,7 +190,7 @@ impl<R: DeviceReal> Gpu<R> {
             let Call::Tangent { blocks, .. } = &mut calls[i].1 else { return Err(not_asked()) };
             let empty = blocks.none();
             let mut blocks = std::mem::replace(blocks, empty).resized(batch.plan.source.len());
-            if outcome == Outcome::Valid {
+            if outcome == Evaluated::Valid {
                 let upper = |component, block| upper.at((slot * 9 + component) * count + block);
                 match &mut blocks {
                     Blocks::Double(blocks) => mirror(&batch.plan.source, upper, blocks),
@@ -240,7 +240,7 @@ impl<R: DeviceReal> Gpu<R> {
         let mut answers = Vec::with_capacity(outcomes.len());
         for (slot, (&i, outcome)) in dispatch.requests.iter().zip(outcomes).enumerate() {
             let mut of_state = Energies::default();
-            if outcome == Outcome::Valid {
+            if outcome == Evaluated::Valid {
                 let (case, displacement) = (calls[i].0, calls[i].1.displacement());
                 let batch = self.batch()?;
                 batch.keep(dispatch, slot, &self.models[case], displacement)?;

@@ -23,7 +23,7 @@ use super::scratch::{Dimensions, Kernels, Scratch};
 use super::source::Precision;
 use super::tangents::Tangents;
 use crate::compute::gather::GatherPlan;
-use crate::compute::{CaseModel, ComputeError, Outcome};
+use crate::compute::{CaseModel, ComputeError, Evaluated};
 
 /// The arrays and kernels of a batch.
 #[derive(Debug)]
@@ -197,7 +197,7 @@ impl<R: DeviceReal> Batch<R> {
         evaluation: Evaluation,
         buffer: &StorageBuffer<T>,
         out: &mut [T],
-    ) -> Result<Vec<Outcome>, GpuError> {
+    ) -> Result<Vec<Evaluated>, GpuError> {
         let mut list = self.context.record();
         self.append(dispatch, evaluation, &mut list)?;
         let mut first = vec![0u32; dispatch.cases.len()];
@@ -243,7 +243,7 @@ impl<R: DeviceReal> Batch<R> {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn internal_force(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Outcome>, Vec<R>), GpuError> {
+    pub fn internal_force(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Evaluated>, Vec<R>), GpuError> {
         self.begin_element(dispatch, increments)?;
         let (sizes, slots) = (self.sizes(), dispatch.cases.len());
         let mut force = vec![R::ZERO; slots * 3 * sizes.nodes];
@@ -254,7 +254,7 @@ impl<R: DeviceReal> Batch<R> {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn tangent(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Outcome>, UpperBlocks<R>), GpuError> {
+    pub fn tangent(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Evaluated>, UpperBlocks<R>), GpuError> {
         self.begin_element(dispatch, increments)?;
         Ok(match &self.tangents {
             Tangents::Same(set) => {
@@ -274,7 +274,7 @@ impl<R: DeviceReal> Batch<R> {
         &self,
         dispatch: &Dispatch,
         buffer: &StorageBuffer<T>,
-    ) -> Result<(Vec<Outcome>, Vec<T>), GpuError> {
+    ) -> Result<(Vec<Evaluated>, Vec<T>), GpuError> {
         let (slots, of_slot) = (dispatch.cases.len(), 9 * self.sizes().blocks);
         let mut blocks = vec![T::ZERO; slots * of_slot];
         let at_a_time = if self.solves() { 1 } else { slots };
@@ -303,7 +303,7 @@ impl<R: DeviceReal> Batch<R> {
         rows: &[f32],
         fixed: &[u32],
         sides: &[Right],
-    ) -> Result<(Vec<Outcome>, Vec<Answers>), GpuError> {
+    ) -> Result<(Vec<Evaluated>, Vec<Answers>), GpuError> {
         let (context, slots) = (&self.context, dispatch.cases.len());
         let nothing = || GpuError::Length { what: "the levels of the mesh's hierarchy".into(), expected: 1, given: 0 };
         let linear = self.linear.as_ref().ok_or_else(nothing)?;
@@ -343,7 +343,7 @@ impl<R: DeviceReal> Batch<R> {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn update(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Outcome>, Vec<R>), GpuError> {
+    pub fn update(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Evaluated>, Vec<R>), GpuError> {
         self.begin_element(dispatch, increments)?;
         let (sizes, slots) = (self.sizes(), dispatch.cases.len());
         let mut energies = vec![R::ZERO; slots * 3 * sizes.elements];

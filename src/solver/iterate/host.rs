@@ -3,7 +3,7 @@
 use super::{Asked, Correction, Iterate, SetOut};
 use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::{Reading, Vectors};
-use crate::compute::{ComputeError, Outcome};
+use crate::compute::{ComputeError, Evaluated};
 use crate::contact::coulomb::{Friction, Status};
 use crate::linalg::{LinalgError, SolverKind};
 use crate::mesh::Mesh;
@@ -96,8 +96,8 @@ impl HostIterate {
     }
 
     /// What Newton's method decides by of a trial, as seen from the current iterate.
-    fn reading(&self, trial: &Trial, outcome: Outcome, case: &CaseHandle<'_>, control: &Control) -> Reading {
-        if outcome != Outcome::Valid {
+    fn reading(&self, trial: &Trial, outcome: Evaluated, case: &CaseHandle<'_>, control: &Control) -> Reading {
+        if outcome != Evaluated::Valid {
             return Reading::of_nothing(outcome);
         }
         let held = || trial.contact_force(&case.model().mesh, &self.boundary)[2];
@@ -179,7 +179,7 @@ impl HostIterate {
         vectors: &Vectors,
         h: f64,
         control: &Control,
-    ) -> Result<Outcome, SolverError> {
+    ) -> Result<Evaluated, SolverError> {
         self.furnish(&case.model().mesh.clone())?;
         self.current.u.copy_from_slice(&vectors.displacement);
         self.current.force.copy_from_slice(&vectors.force);
@@ -236,7 +236,7 @@ impl HostIterate {
         control: &Control,
         length: f64,
         times: &mut PhaseTimes,
-    ) -> Result<Outcome, ComputeError> {
+    ) -> Result<Evaluated, ComputeError> {
         for ((u, u0), d) in self.candidate.u.iter_mut().zip(&self.current.u).zip(&self.delta) {
             *u = u0 + length * d;
         }
@@ -266,11 +266,11 @@ impl Iterate for HostIterate {
             self.current.u.copy_from_slice(guess);
             self.boundary.place_plate(&mut self.current.u, self.current.h, &control.pose);
             let mut outcome = self.current.evaluate(case, &self.boundary, control, times)?;
-            let landed = if outcome == Outcome::Valid { self.let_landed_slide() } else { 0 };
+            let landed = if outcome == Evaluated::Valid { self.let_landed_slide() } else { 0 };
             if landed > 0 {
                 outcome = self.current.assess(case, &self.boundary, control, times)?;
             }
-            if outcome == Outcome::Valid {
+            if outcome == Evaluated::Valid {
                 return Ok(Reading { landed, ..self.reading(&self.current, outcome, case, control) });
             }
         }
@@ -278,7 +278,7 @@ impl Iterate for HostIterate {
         self.current.u.copy_from_slice(start.displacement);
         // The plate's increment enters through the linear system.
         let mut outcome = self.current.evaluate(case, &self.boundary, control, times)?;
-        if outcome == Outcome::Valid && self.current.force_scale == 0.0 {
+        if outcome == Evaluated::Valid && self.current.force_scale == 0.0 {
             // Nothing touches: the body follows the plate as it is.
             self.follow_plate(&mesh, start, control);
             self.boundary.place_plate(&mut self.current.u, self.current.h, &control.pose);
@@ -317,7 +317,7 @@ impl Iterate for HostIterate {
         let outcome = self.evaluate(case, control, length, times)?;
         self.tried = length;
         let reading = self.reading(&self.candidate, outcome, case, control);
-        if outcome != Outcome::Valid {
+        if outcome != Evaluated::Valid {
             return Ok(reading);
         }
         Ok(Reading { slope: self.slope(&self.candidate), ..reading })

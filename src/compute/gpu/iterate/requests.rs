@@ -11,7 +11,7 @@ use crate::compute::iterate::{
     Ask, Begin, Correct, Corrected, From, Plate, Reading, Reply, Request, Settled, SettledPoint, Vectors,
 };
 use crate::compute::linear::SideReport;
-use crate::compute::{Answer, Call, ComputeError, Outcome};
+use crate::compute::{Answer, Call, ComputeError, Evaluated};
 use crate::contact::coulomb::Friction;
 
 /// What is asked of the iterates of a case, and the reply.
@@ -110,7 +110,7 @@ impl<R: DeviceReal> Gpu<R> {
                 };
                 for ((request, readout), mark) in requests.iter_mut().zip(readouts).zip(&marks) {
                     let read = reading(&readout);
-                    if read.outcome == Outcome::Valid {
+                    if read.outcome == Evaluated::Valid {
                         gpu.current[request.case] = mark.trial;
                     }
                     gpu.note(request.case, mark, &readout);
@@ -329,7 +329,7 @@ fn alone(reading: Reading) -> Reading {
 
 fn reading(readout: &Readout) -> Reading {
     let Readout { outcome, numbers, counts } = readout;
-    if *outcome != Outcome::Valid {
+    if *outcome != Evaluated::Valid {
         return Reading::of_nothing(*outcome);
     }
     let read = Reading {
@@ -344,5 +344,5 @@ fn reading(readout: &Readout) -> Reading {
         changed: counts[0] as usize,
         landed: counts[1] as usize,
     };
-    read.check().map_or_else(|fault| Reading::of_nothing(Outcome::Invalid(fault)), |()| read)
+    read.check().map_or_else(|fault| Reading::of_nothing(Evaluated::Invalid(fault)), |()| read)
 }

@@ -13,7 +13,7 @@ use super::super::pipelines::Recorder;
 use super::arrays::{Kept, READINGS, SLIDES};
 use super::kernels::Iterates;
 use super::marks::{Brought, Committed, Corrections, Mark, Readout, flags};
-use crate::compute::{Energies, Outcome};
+use crate::compute::{Energies, Evaluated};
 
 /// Krylov iterations by which a correction's list is longer the second time.
 const MORE_AGAIN: usize = 6;
@@ -33,7 +33,7 @@ impl<R: DeviceReal> Back<R> {
     }
 
     fn readouts(&self) -> Vec<Readout> {
-        let readout = |(slot, outcome): (usize, Outcome)| {
+        let readout = |(slot, outcome): (usize, Evaluated)| {
             let numbers: [f64; READINGS] = std::array::from_fn(|i| self.readings[READINGS * slot + i].to_f64());
             Readout { outcome, numbers, counts: self.counts[slot] }
         };
@@ -305,7 +305,7 @@ impl<R: DeviceReal> Batch<R> {
             told.at_points.read(0, &mut at_points)?,
             told.status.read(0, &mut status)?,
         ])?;
-        let committed = |(slot, outcome): (usize, Outcome)| {
+        let committed = |(slot, outcome): (usize, Evaluated)| {
             let [elastic, plastic, max_alpha] = std::array::from_fn(|i| energies[3 * slot + i].to_f64());
             Committed {
                 outcome,
