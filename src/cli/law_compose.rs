@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::law::warn_out_of_range;
+use super::print::warn_out_of_range;
 use super::{CliError, Exit, print};
 use crate::case::Case;
 use crate::law::interpolated::Interpolated;

@@ -7,7 +7,7 @@ use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 
 use super::input::Input;
-use super::law::warn_out_of_range;
+use super::print::warn_out_of_range;
 use super::{CliError, Exit, print};
 use crate::law::export::{Engine, ExportedFile, Language, Start, beyond_the_law, law_files, law_source, start_files};
 use crate::law::{LawError, LawFile};

@@ -99,7 +99,7 @@ fn plot_run(run: &OutputDirectory, args: &PlotArgs) -> Result<Exit, CliError> {
     if let Some(law) = &law {
         let in_case = |source: LawError| CliError::LawCase { file: run.case(), source: Box::new(source) };
         let (picture, out_of_range) = beside_run(law, &case, &history, &view).map_err(in_case)?;
-        super::law::warn_out_of_range(&run.case(), &out_of_range);
+        super::print::warn_out_of_range(&run.case(), &out_of_range);
         pictures.push(picture);
     }
     if pictures.is_empty() {

@@ -13,12 +13,15 @@ use crate::contact::coulomb::{Friction, Status};
 use crate::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
 use crate::material::{Elasticity, FlowStress, Material};
 use crate::mesh::Mesh;
+use crate::solver::boundary::Boundary;
 use crate::solver::contact_rows::apply_contact;
 use crate::solver::iterate::SetOut;
 use crate::solver::newton::Newton;
+use crate::solver::opponent::plane::Plane;
 use crate::solver::phases::PhaseTimes;
 use crate::solver::pose::Pose;
-use crate::solver::system::{Boundary, Trial, fixed_unknowns, plate_functional, right_hand_side};
+use crate::solver::system::{fixed_unknowns, plate_functional, right_hand_side};
+use crate::solver::trial::Trial;
 use crate::solver::{Control, Settings, StepOutcome};
 use std::sync::Arc;
 
@@ -127,7 +130,7 @@ fn on_host(pressed: &mut Pressed, case: usize, u: &[f64], h: f64, control: &Cont
     trial.u.copy_from_slice(u);
     trial.h = h;
     let mut handle = CaseHandle { backend: &mut pressed.cpu, case };
-    let outcome = trial.evaluate(&mut handle, &boundary, control, &mut PhaseTimes::default()).unwrap();
+    let outcome = trial.evaluate(&mut handle, &boundary, &Plane, control, &mut PhaseTimes::default()).unwrap();
     assert_eq!(outcome, Evaluated::Valid);
     (trial, boundary)
 }
@@ -169,7 +172,7 @@ fn a_trial_reads_so_on(mut pressed: Pressed) {
                 near("force scale", tried.force_scale, trial.force_scale, trial.force_scale);
                 near("plate force", tried.plate_force, trial.plate_force, trial.force_scale);
                 near("tangential", tried.tangential, trial.tangential_residual(), trial.merit);
-                near("normal force", tried.normal_force, trial.contact_force(&mesh, &boundary)[2], trial.force_scale);
+                near("normal force", tried.normal_force, trial.contact_force(&mesh, &boundary, &Plane)[2], trial.force_scale);
                 let free = || trial.residual.iter().zip(&correction).zip(&fixed).filter(|(_, fixed)| !**fixed);
                 let (slope, size) = free().fold((0.0, 0.0), |(s, t), ((r, d), _)| (s + r * d, t + (r * d).abs()));
                 near("slope", tried.slope, slope, size);

@@ -2,7 +2,6 @@
 //! in f64, and how many iterations it takes for that.
 
 use super::batch::{random, tangents};
-use super::kernels::down_to_one_element;
 use crate::compute::cpu::Cpu;
 use crate::compute::gpu::{DeviceReal, Gpu, GpuContext};
 use crate::compute::linear::{self, Ended, Side, SideReport, Solved};
@@ -10,9 +9,10 @@ use crate::compute::{Answer, Call, CaseModel, Compute, Evaluated};
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, Status, contact_rows};
 use crate::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
 use crate::material::{Elasticity, FlowStress, Material};
-use crate::mesh::{Mesh, SphereSpec, sphere_mesh, whole};
+use crate::mesh::{Mesh, Prolongation, SphereSpec, brick, sphere_mesh, whole};
+use crate::solver::boundary::Boundary;
 use crate::solver::contact_rows::apply_contact;
-use crate::solver::system::{Boundary, fixed_unknowns, plate_functional};
+use crate::solver::system::{fixed_unknowns, plate_functional};
 use std::sync::Arc;
 
 /// Cases of a batch.
@@ -33,6 +33,34 @@ pub fn meshes() -> [Arc<Mesh>; 4] {
         sphere_mesh(&spec).unwrap()
     };
     [half(0), half(1), half(2), whole(&half(0))].map(Arc::new)
+}
+
+/// A box whose levels are halved down to a single element.
+pub(super) fn down_to_one_element() -> Arc<Mesh> {
+    let mut mesh = brick(8, 8, 8, [0.2; 3]).unwrap();
+    mesh.hierarchy = [8, 4, 2].map(halved).to_vec();
+    assert_eq!(mesh.hierarchy[2].coarse_nodes, 8);
+    Arc::new(mesh)
+}
+
+/// Trilinear interpolation to the nodes of a box of so many cells a side from every second one.
+fn halved(cells: usize) -> Prolongation {
+    let (fine, coarse) = (cells + 1, cells / 2 + 1);
+    let mut p = Prolongation { coarse_nodes: coarse.pow(3), row_start: vec![0], column: vec![], weight: vec![] };
+    for node in 0..fine.pow(3) {
+        let at = [node % fine, node / fine % fine, node / fine.pow(2)];
+        let is_between = at.map(|i| i % 2 == 1);
+        let weight = is_between.iter().filter(|between| **between).fold(1.0, |weight, _| 0.5 * weight);
+        for corner in [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]] {
+            if (0..3).all(|axis| is_between[axis] || corner[axis] == 0) {
+                let [i, j, k] = [0, 1, 2].map(|axis| at[axis] / 2 + corner[axis]);
+                p.column.push((i + coarse * (j + coarse * k)) as u32);
+                p.weight.push(weight);
+            }
+        }
+        p.row_start.push(p.column.len() as u32);
+    }
+    p
 }
 
 /// Both halves of a sphere of even elements.

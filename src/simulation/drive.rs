@@ -13,6 +13,7 @@ use std::sync::Arc;
 use super::SimulationError;
 use super::checkpoint::{Committed, PathPosition, Snapshot};
 pub use super::ending::{Ending, Outgrowth};
+use super::equator;
 use super::observer::Displacement;
 pub use super::observer::{Observer, StepView};
 use super::path::{Resolution, Start, Target, indentation_targets, straight_targets};
@@ -448,7 +449,7 @@ impl<'a> Drive<'a> {
             came_off: &[],
         };
         let mut handle = CaseHandle { backend: &mut *self.backend, case: self.case };
-        let outcome = widening::solve(&mut self.newton, &mut handle, &start, &mut control, self.state.equator.as_ref())?;
+        let outcome = equator::solve(&mut self.newton, &mut handle, &start, &mut control, self.state.equator.as_ref())?;
         self.state.stretch = control.pose.stretch;
         self.place.wasted += self.newton.take_given_up();
         if let StepOutcome::Converged(_) = outcome {

@@ -16,6 +16,7 @@ use crate::memory;
 use crate::mesh::couple::{self, couple};
 use crate::mesh::sphere::{SphereSpec, flat_mesh, opponent_mesh, sphere_mesh};
 use crate::mesh::{Mesh, MeshError, whole};
+use crate::solver::boundary::Boundary;
 use crate::solver::newton::Newton;
 use crate::solver::opponent;
 use crate::solver::opponent::couple::TwoBodies;
@@ -23,7 +24,6 @@ use crate::solver::opponent::joint::Joint;
 use crate::solver::opponent::pair::EqualPair;
 use crate::solver::opponent::plane::Plane;
 use crate::solver::opponent::rigid::RigidSphere;
-use crate::solver::system::Boundary;
 use crate::solver::{FULLY_PLASTIC, Settings, SolverError, first_linear, held_linear, loosest_linear, monotone_from};
 
 /// A case ready to be simulated.

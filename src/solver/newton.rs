@@ -11,8 +11,8 @@ use super::opponent::{Opponent, StepTaken};
 use super::outcome::{Halt, Iteration, StepFailure, StepOutcome, StepReport};
 use super::phases::{Lap, Phase, PhaseTimes};
 use super::pose::{MODES, Pose};
-use super::system::Trial;
 use super::systems::Systems;
+use super::trial::Trial;
 use super::{Control, Settings, SolverError};
 use crate::compute::ComputeError;
 use crate::compute::handle::CaseHandle;
@@ -116,7 +116,7 @@ impl Newton {
 
     /// What the body is pressed against.
     pub fn opponent(&self) -> &dyn Opponent {
-        &*self.iterates.host.boundary().opponent
+        self.iterates.host.opponent()
     }
 
     /// Which iterates of the case stay on this backend.
@@ -129,7 +129,7 @@ impl Newton {
     /// where these are not those of one body over a plane; `None` where neither does.
     pub fn stays_on_host(&self) -> Option<&'static str> {
         let host = &self.iterates.host;
-        if !host.boundary().opponent.is_plane() {
+        if !host.opponent().is_plane() {
             return Some(
                 "the sphere is pressed against a body, so the vectors and linear systems of Newton's method stay on the host",
             );
