@@ -2,7 +2,7 @@
 
 use super::components::Components;
 use super::inputs::{INPUTS, NAMES};
-use super::{FORMAT, Interpolated, PROCESSES, VERSION};
+use super::model::{FORMAT, Interpolated, PROCESSES, VERSION};
 use crate::contact_law::Frame;
 use crate::law::bounds::{Bounds, Checked, TOLD};
 use crate::law::json::LawKind;

@@ -6,9 +6,9 @@ use rayon::prelude::*;
 
 use super::components::{COMPONENTS, Components, Curve};
 use super::inputs::{self, INPUTS, inputs};
+use super::model::{self, FORMAT, Input, Interpolated, NormalErrors, Source, VERSION, bodies, keeps_its_force};
 use super::outputs::{self, NUMBERS, Outputs, outputs};
 use super::process::{InputPoint, Process};
-use super::{FORMAT, Input, Interpolated, NormalErrors, Source, VERSION, bodies, keeps_its_force};
 use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Hold, Material, Opponent, Segment};
 use crate::contact_law::{Frame, POINTS};
@@ -241,7 +241,7 @@ fn sample(
     reversal: Option<&Interpolated>,
     materials: &mut Vec<Material>,
 ) -> Result<Option<Sample>, LawError> {
-    let friction = super::friction(case);
+    let friction = model::friction(case);
     let history = read_history(&directory.history())?;
     let Some(measured) = Measured::of(case, &history) else { return Ok(None) };
     let (body, sphere) = bodies(case)?;
