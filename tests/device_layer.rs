@@ -11,7 +11,7 @@ use asperity::internals::compute::gpu::adapters::adapters;
 use asperity::internals::compute::gpu::arguments::Argument;
 use asperity::internals::compute::gpu::error::ArgumentFlaw;
 use asperity::internals::compute::gpu::layout;
-use asperity::internals::compute::gpu::linear::parts::Part;
+use asperity::internals::compute::gpu::linear::parts::SolvePart;
 use asperity::internals::compute::gpu::material::{self, Answers};
 use asperity::internals::compute::gpu::report::{Surroundings, report};
 use asperity::internals::compute::gpu::source::{Precision, Source};
@@ -375,7 +375,7 @@ fn neither_a_profile_nor_pieces_change_a_bit_of_a_run() {
             let mut gpu = Gpu::<f64>::with_tangents_in_single(context.clone(), vec![problem.model.clone()]).unwrap();
             let ending = Drive::new(&problem, &mut gpu, 0, problem.newton().unwrap()).run(&mut bits).unwrap();
             assert!(matches!(ending, Ending::Done), "{name}: {ending:?}");
-            let product = gpu.solver().unwrap().account(Part::Product);
+            let product = gpu.solver().unwrap().account(SolvePart::Product);
             let product = bits.1 * 4 * (product.numbers + product.shared);
             let cost = (begun.elapsed().as_secs_f64(), product as u64, context.pieces_sent_ahead());
             (bits.0, gpu.about().traffic.unwrap(), context.kernel_times(), cost)

@@ -35,7 +35,7 @@ const SAME_TANGENT: f64 = 1e-4;
 const SAME_UP_TO: f64 = 13.0 / 6.0;
 
 /// One case as the CPU holds it; its tangents are formed in `T`.
-struct Case<R, T> {
+struct CpuCase<R, T> {
     material: Material<R>,
     /// Material of the elements from this one on.
     opponent: (usize, Material<R>),
@@ -94,7 +94,7 @@ impl<T: Real> Held<T> {
 /// Tangents in `R` are exact.
 pub struct Cpu<R, T = R> {
     models: Vec<CaseModel>,
-    cases: Vec<Case<R, T>>,
+    cases: Vec<CpuCase<R, T>>,
     plan: GatherPlan,
     element_force: Vec<Nodal<R>>,
     sweep: Sweep,
@@ -138,7 +138,7 @@ impl<R: Real, T: Real> Cpu<R, T> {
                 return Err(ComputeError::Connectivity { case });
             }
         }
-        let cases = models.iter().map(Case::new).collect::<Result<_, _>>()?;
+        let cases = models.iter().map(CpuCase::new).collect::<Result<_, _>>()?;
         // The front of one case has room for the next one's.
         let (keep, kept) = if takes_again::<R, T>() { (Keep::All, models.len()) } else { (Keep::Front, 1) };
         let sweep = Sweep::new(&first.mesh, keep);
@@ -154,7 +154,7 @@ impl<R: Real, T: Real> Cpu<R, T> {
     }
 }
 
-impl<R: Real, T: Real> Case<R, T> {
+impl<R: Real, T: Real> CpuCase<R, T> {
     fn new(model: &CaseModel) -> Result<Self, ComputeError> {
         let mesh = model.mesh.clone();
         let opponent = model.opponent.as_ref().unwrap_or(&model.material);
@@ -481,7 +481,7 @@ impl<R: Real, T: Real> Cpu<R, T> {
         if !model.is_alike(&self.models[case]) {
             return Err(ComputeError::Connectivity { case });
         }
-        self.cases[case] = Case::new(&model)?;
+        self.cases[case] = CpuCase::new(&model)?;
         // Tangents are known by the step that they are of, which is counted anew.
         if let Some(held) = self.element_tangent.get_mut(case) {
             held.fill(Held::NONE);

@@ -193,7 +193,7 @@ mod device {
 
     use super::{DeviceChoice, PrecisionChoice, Selected, SharedCalls, cpu, notes_of};
     use crate::compute::fallback::Fallback;
-    use crate::compute::gpu::trial::Trial;
+    use crate::compute::gpu::trial::TrialRun;
     use crate::compute::gpu::{DeviceRequest, Gpu, GpuContext, GpuError, KernelTimes, Mixed, Precision};
     use crate::compute::lost::hooked;
     use crate::compute::{CaseModel, Compute, ComputeError};
@@ -212,7 +212,7 @@ mod device {
         };
         match GpuContext::open(request)? {
             Some(context) if device == DeviceChoice::Auto && !context.is_named() => {
-                let trial = Trial::of(&context);
+                let trial = TrialRun::of(&context);
                 Ok(judged(context, trial))
             }
             context => Ok(Opened { context, notes: Vec::new() }),
@@ -220,7 +220,7 @@ mod device {
     }
 
     /// A device that `auto` found, if the measurement is in favour of it.
-    fn judged(context: GpuContext, trial: Result<Trial, ComputeError>) -> Opened {
+    fn judged(context: GpuContext, trial: Result<TrialRun, ComputeError>) -> Opened {
         let name = context.adapter().name.clone();
         let (takes, note) = match trial {
             Ok(trial) if trial.takes_device() => (true, format!("{name} was chosen: {trial}")),

@@ -12,8 +12,8 @@ use super::dispatch::{Dispatch, Evaluation, status_of};
 use super::error::GpuError;
 use super::layout::{HISTORY, ROWS, STATE, TRIAL};
 use super::linear::pack::Packed;
-use super::linear::parts::Part;
-use super::linear::solver::Linear;
+use super::linear::parts::SolvePart;
+use super::linear::solver::SlotSolver;
 use super::source::Precision;
 use crate::compute::call::not_asked;
 use crate::compute::cpu::Cpu;
@@ -126,7 +126,7 @@ impl<R: DeviceReal> Gpu<R> {
     ///
     /// # Errors
     /// [`ComputeError::Device`], also where linear systems are not solved on the device.
-    pub fn repeat_part(&self, part: Part, cases: &[usize], times: usize) -> Result<(), ComputeError> {
+    pub fn repeat_part(&self, part: SolvePart, cases: &[usize], times: usize) -> Result<(), ComputeError> {
         let missing = || ComputeError::Device("the linear systems are not solved on the device".to_owned());
         let solver = self.solver().ok_or_else(missing)?;
         for dispatch in self.schedule(cases.iter().copied()) {
@@ -141,7 +141,7 @@ impl<R: DeviceReal> Gpu<R> {
     }
 
     /// What solves linear systems on the device, if anything does.
-    pub fn solver(&self) -> Option<&Linear> {
+    pub fn solver(&self) -> Option<&SlotSolver> {
         self.batch.as_ref().and_then(|batch| batch.linear.as_ref())
     }
 

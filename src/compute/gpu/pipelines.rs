@@ -33,7 +33,7 @@ impl Bound {
 }
 
 /// Kernels to be run one after the other, each seeing what those before it wrote.
-pub struct Recorder<'a> {
+pub struct KernelList<'a> {
     context: &'a GpuContext,
     encoder: wgpu::CommandEncoder,
     /// What goes ahead of that, each in a submission of its own.
@@ -146,8 +146,8 @@ impl GpuContext {
     /// Starts a list of kernels to be run in one submission, or in several where the last list took
     /// too long for a driver's patience. They are sent one right after the other, once the list is
     /// complete: what is uploaded meanwhile comes before all of them.
-    pub fn record(&self) -> Recorder<'_> {
-        Recorder {
+    pub fn record(&self) -> KernelList<'_> {
+        KernelList {
             context: self,
             encoder: self.encoder(),
             ahead: Vec::new(),
@@ -171,7 +171,7 @@ impl GpuContext {
     }
 }
 
-impl Recorder<'_> {
+impl KernelList<'_> {
     /// Appends one kernel: `threads` along x (rounded up to whole workgroups) for each of `cases`
     /// along y.
     ///
@@ -186,7 +186,7 @@ impl Recorder<'_> {
     /// threads.
     ///
     /// # Errors
-    /// As [`Recorder::dispatch`].
+    /// As [`KernelList::dispatch`].
     pub fn dispatch_as_told(
         &mut self,
         bound: &Bound,

@@ -6,7 +6,7 @@ use crate::compute::{Energies, Evaluated};
 
 /// What is done to a slot, as `told.wgsl` has it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Mark {
+pub struct SlotMark {
     /// The current iterate of the case, 0 or 1.
     pub current: u32,
     /// The one that is made.
@@ -81,7 +81,7 @@ pub struct Readout {
 
 /// What a commit leaves in a slot.
 #[derive(Clone, Debug)]
-pub struct Committed {
+pub struct CommitReport {
     /// How it went.
     pub outcome: Evaluated,
     /// Energies of the body.

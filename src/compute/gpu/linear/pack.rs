@@ -1,7 +1,7 @@
 //! Systems as the device takes them, and its answers as they are asked for.
 
 use super::super::layout::POINT_ROWS;
-use super::solver::{Answers, Right};
+use super::solver::{Right, SideSolutions};
 use crate::compute::linear::{Side, SideReport, Solution, System};
 use crate::contact::coulomb::Status;
 
@@ -54,9 +54,9 @@ impl Packed {
     }
 
     /// What the device answered for a slot: fixed unknowns keep the values that were given.
-    pub fn unpack(&self, slot: usize, answers: &[Answers], system: &System) -> Vec<Solution> {
+    pub fn unpack(&self, slot: usize, answers: &[SideSolutions], system: &System) -> Vec<Solution> {
         let sides = system.sides.iter().zip(answers).zip(&self.factors);
-        let solution = |((side, (solutions, reports)), factors): ((&Side, &Answers), &Vec<f64>)| {
+        let solution = |((side, (solutions, reports)), factors): ((&Side, &SideSolutions), &Vec<f64>)| {
             let (back, n) = (1.0 / factors[slot], side.rhs.len());
             let solution = &solutions[slot * n..][..n];
             let value = |i: usize| {
