@@ -9,7 +9,7 @@ use asperity::internals::compute::gpu::kernels::KERNELS;
 use asperity::internals::compute::gpu::reflect::{Binding, Interface};
 use asperity::internals::compute::gpu::shader_sources::{MATH, TENSOR};
 use asperity::internals::compute::gpu::source::{Assembled, Precision, Source};
-use asperity::internals::compute::gpu::validate::{Checked, validate};
+use asperity::internals::compute::gpu::validate::{ValidSource, validate};
 use asperity::material::HardeningLaw;
 use lint::Rule;
 use std::io::Write;
@@ -67,7 +67,7 @@ fn hardening_laws_have_the_codes_of_the_program() {
 #[test]
 fn every_kernel_has_one_entry_point_of_its_name_and_takes_the_same_in_both_precisions() {
     each_kernel(|kernel, precision, source| {
-        let Checked { module, .. } = validate(source).unwrap();
+        let ValidSource { module, .. } = validate(source).unwrap();
         assert_eq!(module.entry_points.len(), 1, "{}", kernel.name);
         let (entry, interface) = (&module.entry_points[0], Interface::of(source).unwrap());
         assert_eq!((entry.name.as_str(), entry.workgroup_size), (kernel.name, [interface.workgroup, 1, 1]));
@@ -186,7 +186,7 @@ fn the_spirv_is_valid() {
     }
     let folder = tempfile::tempdir().unwrap();
     each_kernel(|kernel, precision, source| {
-        let Checked { module, info } = validate(source).unwrap();
+        let ValidSource { module, info } = validate(source).unwrap();
         let options = naga::back::spv::Options { lang_version: (1, 3), ..Default::default() };
         let words = naga::back::spv::write_vec(&module, &info, &options, None).unwrap();
         let path = folder.path().join(format!("{}_{precision}.spv", kernel.name));

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::input::{mesh, models};
-use super::report::{Measurement, On, Report, Row};
+use super::report::{Measurement, On, RateRow, RatesReport};
 use super::timing::{Timing, measure as repeat, of_kernels};
 use super::{BenchError, Options};
 use crate::compute::gpu::linear::parts::SolvePart;
@@ -13,7 +13,7 @@ use crate::compute::gpu::{DeviceReal, Evaluation, Gpu, GpuContext};
 use crate::compute::{CaseModel, ComputeError};
 
 /// What is known of each part: its account, calls and kernels in milliseconds.
-type Found = Vec<(Cost, Timing, f64)>;
+type PartTimes = Vec<(Cost, Timing, f64)>;
 
 /// Measures every part at every batch size: in single precision, as all of the solver is.
 ///
@@ -22,7 +22,7 @@ type Found = Vec<(Cost, Timing, f64)>;
 pub fn measure(
     options: &Options,
     context: Option<&Arc<GpuContext>>,
-    report: &mut Report,
+    report: &mut RatesReport,
     say: &mut dyn FnMut(&str),
 ) -> Result<(), BenchError> {
     let Some(context) = context else { return Ok(()) };
@@ -41,7 +41,7 @@ pub fn measure(
             // Of a solver that does not fit, bytes and operations are not known.
             let known = found.as_ref().ok().map(|found| found[i]);
             let account = known.map_or(Cost::default(), |(account, _, _)| account);
-            let row = Row {
+            let row = RateRow {
                 evaluation: name,
                 law: "power",
                 precision: "f32",
@@ -60,7 +60,7 @@ pub fn measure(
     Ok(())
 }
 
-fn parts<R: DeviceReal>(options: &Options, gpu: &Gpu<R>, models: &[CaseModel]) -> Result<Found, ComputeError> {
+fn parts<R: DeviceReal>(options: &Options, gpu: &Gpu<R>, models: &[CaseModel]) -> Result<PartTimes, ComputeError> {
     // Where it does not fit, a note says what it needs.
     let why = || gpu.notes().first().cloned().unwrap_or_else(|| "the device solves no linear systems".to_owned());
     let missing = || ComputeError::Device(why());

@@ -5,7 +5,7 @@ use super::error::CaseError;
 use super::motion;
 use super::reader::{Field, Reader};
 use super::segment::{Hold, Segment, ShearTarget};
-use super::targets::{Lengths, State, displacement, read_full_slip, read_hold, read_indentation};
+use super::targets::{Lengths, PathState, displacement, read_full_slip, read_hold, read_indentation};
 
 const PATH: &str = "at least one [[path]] segment, the first with an indentation > 0";
 
@@ -22,7 +22,7 @@ pub(super) fn read(
     if items.is_empty() {
         return Err(field.refuse("is empty", PATH));
     }
-    let mut state = State::default();
+    let mut state = PathState::default();
     items
         .iter()
         .map(|item| {
@@ -34,7 +34,7 @@ pub(super) fn read(
         .collect()
 }
 
-fn read_segment(table: &Reader<'_>, state: &mut State, lengths: &Lengths, friction: Friction) -> Result<Segment, CaseError> {
+fn read_segment(table: &Reader<'_>, state: &mut PathState, lengths: &Lengths, friction: Friction) -> Result<Segment, CaseError> {
     const ONE: &str = "one of release and targets of the plate (indentation, shear, twist, roll, in proportion if there are \
                        several), in each [[path]]";
     table.only(&["indentation", "shear", "shear_direction", "twist", "roll", "hold", "release"])?;
@@ -71,7 +71,7 @@ fn read_segment(table: &Reader<'_>, state: &mut State, lengths: &Lengths, fricti
     }
 }
 
-fn read_release(field: &Field<'_>, state: &mut State) -> Result<Segment, CaseError> {
+fn read_release(field: &Field<'_>, state: &mut PathState) -> Result<Segment, CaseError> {
     const ALLOWED: &str = "release = true, or the share of F_N that is left, between 0 and 1";
     let share = if field.truth() == Some(true) {
         0.0
@@ -90,7 +90,7 @@ fn read_release(field: &Field<'_>, state: &mut State) -> Result<Segment, CaseErr
 }
 
 /// Both targets at once; from where nothing touches too.
-fn read_oblique(h: &Field<'_>, delta_t: &Field<'_>, state: &mut State, lengths: &Lengths) -> Result<Segment, CaseError> {
+fn read_oblique(h: &Field<'_>, delta_t: &Field<'_>, state: &mut PathState, lengths: &Lengths) -> Result<Segment, CaseError> {
     if delta_t.text().is_some() {
         let allowed = "a length: where it ends has to be known";
         return Err(delta_t.refuse("is a word beside indentation", allowed));
@@ -108,7 +108,7 @@ fn read_oblique(h: &Field<'_>, delta_t: &Field<'_>, state: &mut State, lengths: 
     Ok(Segment::Oblique { indentation, shear })
 }
 
-fn read_shear(field: &Field<'_>, state: &mut State, lengths: &Lengths, friction: Friction) -> Result<ShearTarget, CaseError> {
+fn read_shear(field: &Field<'_>, state: &mut PathState, lengths: &Lengths, friction: Friction) -> Result<ShearTarget, CaseError> {
     if !state.in_contact {
         return Err(field.refuse("shears what is not in contact", "shear after a segment with an indentation > 0"));
     }

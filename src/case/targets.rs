@@ -41,7 +41,7 @@ impl Lengths {
 }
 
 /// What is known of the state when a segment begins; `None` where only the simulation can know.
-pub(super) struct State {
+pub(super) struct PathState {
     pub in_contact: bool,
     pub indentation: Option<f64>,
     pub shear: Option<ShearTarget>,
@@ -51,7 +51,7 @@ pub(super) struct State {
     pub twist: f64,
 }
 
-impl Default for State {
+impl Default for PathState {
     fn default() -> Self {
         let shear = Some(ShearTarget::Displacement(0.0));
         Self { in_contact: false, indentation: Some(0.0), shear, across: Some(0.0), roll: [0.0; 2], twist: 0.0 }
@@ -73,7 +73,7 @@ pub(super) fn displacement(field: &Field<'_>, lengths: &Lengths, or: &str) -> Re
     field.number(&allowed, |shear| (shear / lengths.shear).abs() < MAX_SHEAR)
 }
 
-pub(super) fn read_indentation(field: &Field<'_>, state: &mut State, lengths: &Lengths) -> Result<Segment, CaseError> {
+pub(super) fn read_indentation(field: &Field<'_>, state: &mut PathState, lengths: &Lengths) -> Result<Segment, CaseError> {
     // Compared as ratios, so that a case and its copy in other units are accepted alike.
     let (length, name) = (lengths.press, lengths.press_name);
     let below = |h: f64| h / length < MAX_INDENTATION;

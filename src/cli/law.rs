@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::contact::ContactArgs;
 use super::input::Input;
-use super::law_check::{CheckArgs, check_law};
+use super::law_check::{LawCheckArgs, check_law};
 use super::law_compose::{ComposeArgs, compose_tables};
 use super::law_export::{ExportArgs, export_law};
 use super::law_tabulate::{TabulateArgs, tabulate};
@@ -51,7 +51,7 @@ pub enum LawCommand {
     /// Predict F_N and F_T along the path of a case without simulating it; prints CSV.
     Predict(PredictArgs),
     /// Simulate a set of test paths and print the errors of the law along each.
-    Check(CheckArgs),
+    Check(LawCheckArgs),
     /// Export a law for a DEM code: all files that an engine needs, or the update of one contact as
     /// C headers or as a Python module.
     Export(ExportArgs),

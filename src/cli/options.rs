@@ -60,7 +60,7 @@ impl From<Format> for PictureFormat {
 
 /// The units of axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Units {
+pub enum UnitsOption {
     /// Those of the case if its table `units` names them, else none.
     #[default]
     Auto,
@@ -70,12 +70,12 @@ pub enum Units {
     Case,
 }
 
-impl From<Units> for AxisUnits {
-    fn from(units: Units) -> Self {
+impl From<UnitsOption> for AxisUnits {
+    fn from(units: UnitsOption) -> Self {
         match units {
-            Units::Auto => Self::Auto,
-            Units::None => Self::Normalised,
-            Units::Case => Self::Case,
+            UnitsOption::Auto => Self::Auto,
+            UnitsOption::None => Self::Normalised,
+            UnitsOption::Case => Self::Case,
         }
     }
 }

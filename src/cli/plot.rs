@@ -7,7 +7,7 @@ use std::str::FromStr;
 
 use clap::Args;
 
-use super::options::{Format, Units};
+use super::options::{Format, UnitsOption};
 use super::{CliError, Exit, print};
 use crate::case::{PictureFormat, PictureWidth};
 use crate::law::plots::beside_run;
@@ -42,7 +42,7 @@ pub struct PlotArgs {
     pub no_title: bool,
     /// Units on the axes of a run's pictures.
     #[arg(long, value_enum, default_value_t, value_name = "UNITS")]
-    pub units: Units,
+    pub units: UnitsOption,
 }
 
 /// Finds out what the directory is and draws it.

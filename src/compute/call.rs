@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use super::linear::{Solved, System};
+use super::linear::{SolveRequest, Solved};
 use super::{CaseFields, CaseModel, CaseState, ComputeError, Energies, Evaluated, iterate};
 use crate::contact::coulomb::Rows;
 use crate::real::Real;
@@ -37,7 +37,7 @@ pub enum Call {
         force: Vec<f64>,
     },
     /// Linear systems with the tangent there, where the backend solves them: [`super::About`].
-    Solve(Arc<System>),
+    Solve(Arc<SolveRequest>),
     /// Newton's iterates, where they stay. Only of backends that keep them: [`super::About`].
     Iterate(iterate::Request),
     /// A displacement is the committed one from now on.

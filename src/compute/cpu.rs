@@ -7,13 +7,13 @@ use rayon::prelude::*;
 
 use super::gather::GatherPlan;
 use super::linear::Solved;
-use super::sweep::{Keep, Sweep};
+use super::sweep::{Keep, WaveSweep};
 use super::{
     About, Answer, Blocks, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Evaluated, Fault,
 };
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, contact_rows};
 use crate::contact::plane::{gap, slip};
-use crate::element::hex8::{self, Geometry, Invalid, NODES, Nodal, Points, State, Tangent, pair};
+use crate::element::hex8::{self, ElementGeometry, ElementState, Invalid, NODES, Nodal, Points, Tangent, pair};
 use crate::lanes::array;
 use crate::material::multistep::Flow;
 use crate::material::{Material, PointState};
@@ -41,13 +41,13 @@ struct CpuCase<R, T> {
     opponent: (usize, Material<R>),
     friction: Friction<R>,
     mesh: Arc<Mesh>,
-    geometry: Vec<Geometry<R>>,
+    geometry: Vec<ElementGeometry<R>>,
     /// What tangents take of material and geometry.
     tangent_material: Material<T>,
     tangent_opponent: Material<T>,
-    tangent_geometry: Vec<Geometry<T>>,
+    tangent_geometry: Vec<ElementGeometry<T>>,
     /// Committed state of each element.
-    state: Vec<State<R>>,
+    state: Vec<ElementState<R>>,
     /// The states from which the present step starts.
     start: Vec<Points<R>>,
     /// Committed displacement, three a node.
@@ -66,7 +66,7 @@ struct CpuCase<R, T> {
 
 /// The tangent of an element, and where it was formed.
 #[derive(Clone)]
-struct Held<T> {
+struct KeptTangent<T> {
     tangent: Tangent<T>,
     step: u64,
     increment: Nodal<T>,
@@ -74,7 +74,7 @@ struct Held<T> {
     reach: T,
 }
 
-impl<T: Real> Held<T> {
+impl<T: Real> KeptTangent<T> {
     const NONE: Self = Self { tangent: [[T::ZERO; 9]; hex8::PAIRS], step: 0, increment: [[T::ZERO; 3]; NODES], reach: T::ZERO };
 
     /// Whether it will do for an increment of a step.
@@ -97,11 +97,11 @@ pub struct Cpu<R, T = R> {
     cases: Vec<CpuCase<R, T>>,
     plan: GatherPlan,
     element_force: Vec<Nodal<R>>,
-    sweep: Sweep,
+    sweep: WaveSweep,
     /// Tangents of the elements within the sweep's front, or of all elements, of each case.
-    element_tangent: Vec<Vec<Held<T>>>,
+    element_tangent: Vec<Vec<KeptTangent<T>>>,
     /// State and elastic energy of each element at the end of a step, before it is committed.
-    next: Vec<(State<R>, R)>,
+    next: Vec<(ElementState<R>, R)>,
 }
 
 impl<R: Real> Cpu<R> {
@@ -126,7 +126,7 @@ impl<R: Real, T: Real> Cpu<R, T> {
                 cases: Vec::new(),
                 plan: GatherPlan { pattern: crate::mesh::pattern::Pattern::from_elements(0, &[]), offset: Vec::new() },
                 element_force: Vec::new(),
-                sweep: Sweep::default(),
+                sweep: WaveSweep::default(),
                 element_tangent: Vec::new(),
                 next: Vec::new(),
             });
@@ -141,13 +141,13 @@ impl<R: Real, T: Real> Cpu<R, T> {
         let cases = models.iter().map(CpuCase::new).collect::<Result<_, _>>()?;
         // The front of one case has room for the next one's.
         let (keep, kept) = if takes_again::<R, T>() { (Keep::All, models.len()) } else { (Keep::Front, 1) };
-        let sweep = Sweep::new(&first.mesh, keep);
+        let sweep = WaveSweep::new(&first.mesh, keep);
         Ok(Self {
             models,
             cases,
             plan,
             element_force: vec![[[R::ZERO; 3]; NODES]; elements],
-            element_tangent: vec![vec![Held::NONE; sweep.slots()]; kept],
+            element_tangent: vec![vec![KeptTangent::NONE; sweep.slots()]; kept],
             sweep,
             next: Vec::new(),
         })
@@ -174,7 +174,7 @@ impl<R: Real, T: Real> CpuCase<R, T> {
                 Friction::Coulomb(mu) => Friction::Coulomb(R::of(mu)),
                 Friction::Stick => Friction::Stick,
             },
-            state: vec![State::default(); mesh.elements.len()],
+            state: vec![ElementState::default(); mesh.elements.len()],
             start: vec![Points::default(); mesh.elements.len()],
             committed: vec![0.0; 3 * mesh.nodes.len()],
             weight: mesh.contact_size.iter().map(|&h| R::of(CONTACT_WEIGHT * h)).collect(),
@@ -225,7 +225,7 @@ impl<R: Real, T: Real> CpuCase<R, T> {
     /// elements is there.
     fn tangent<B: Real>(
         &self,
-        (plan, sweep, tangents): (&GatherPlan, &Sweep, &mut [Held<T>]),
+        (plan, sweep, tangents): (&GatherPlan, &WaveSweep, &mut [KeptTangent<T>]),
         displacement: &[f64],
         blocks: &mut [[B; 9]],
     ) -> Evaluated {
@@ -409,7 +409,7 @@ impl<R: Real, T: Real> Cpu<R, T> {
     fn commit(&mut self, index: usize, displacement: &[f64]) -> Answer {
         let case = &self.cases[index];
         let mut energies = Energies::default();
-        self.next.resize(case.state.len(), (State::default(), R::ZERO));
+        self.next.resize(case.state.len(), (ElementState::default(), R::ZERO));
         let outcome = case.each_element(0, CHUNK, displacement, &mut self.next, |case, e, committed, increment, out| {
             let (state, start) = (&case.state[e], &case.start[e]);
             *out = hex8::update(&case.geometry[e], case.material(e), state, start, committed, increment)?;
@@ -484,7 +484,7 @@ impl<R: Real, T: Real> Cpu<R, T> {
         self.cases[case] = CpuCase::new(&model)?;
         // Tangents are known by the step that they are of, which is counted anew.
         if let Some(held) = self.element_tangent.get_mut(case) {
-            held.fill(Held::NONE);
+            held.fill(KeptTangent::NONE);
         }
         self.models[case] = model;
         Ok(())
@@ -520,9 +520,10 @@ fn convert<R: Real, T: Real>(x: R) -> T {
     T::of(x.to_f64())
 }
 
-fn geometry_of<R: Real>(mesh: &Mesh) -> Result<Vec<Geometry<R>>, ComputeError> {
+fn geometry_of<R: Real>(mesh: &Mesh) -> Result<Vec<ElementGeometry<R>>, ComputeError> {
     let of_element = |element: usize| {
-        Geometry::new(&mesh.corners(element)).map_err(|invalid| ComputeError::InvertedMesh { element, point: invalid.point() })
+        ElementGeometry::new(&mesh.corners(element))
+            .map_err(|invalid| ComputeError::InvertedMesh { element, point: invalid.point() })
     };
     (0..mesh.elements.len()).map(of_element).collect()
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::call::{Answer, Call, OfBlocks, not_asked};
 use super::iterate::{Ask, Keeps, Plate, Reply, Request};
-use super::linear::{Solved, System};
+use super::linear::{SolveRequest, Solved};
 use super::{CaseFields, CaseModel, CaseState, Compute, ComputeError, Energies, Evaluated};
 use crate::contact::coulomb::Rows;
 use crate::mesh::Mesh;
@@ -69,7 +69,7 @@ impl CaseHandle<'_> {
     }
 
     /// Linear systems with the tangent, where the backend solves them.
-    pub fn solve(&mut self, system: System) -> Result<Solved, ComputeError> {
+    pub fn solve(&mut self, system: SolveRequest) -> Result<Solved, ComputeError> {
         match self.call(Call::Solve(system.into()))? {
             Answer::Solved(solved) => Ok(solved),
             _ => Err(not_asked()),

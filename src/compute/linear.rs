@@ -8,7 +8,7 @@ use crate::contact::coulomb::Rows;
 /// Asks to form the tangent of one case and to solve linear systems with it, without bringing it to
 /// the host. Over a plane only: contact conditions are stated in the axes of space.
 #[derive(Clone, Debug)]
-pub struct System {
+pub struct SolveRequest {
     /// Trial displacement, three a node.
     pub displacement: Arc<[f64]>,
     /// Contact conditions; those of points that slide replace the rows of their nodes.

@@ -2,7 +2,7 @@
 //! and leaves on every level are the CPU's, which are in f32 too; the vectors of FGMRES, which the
 //! CPU makes in another way, are held to the equations that define them, in f64.
 
-use super::linear::{Numbers, System, down_to_one_element, mesh, models, own_numbers, solve, system, whole_mesh};
+use super::linear::{Numbers, TestSystem, down_to_one_element, mesh, models, own_numbers, solve, system, whole_mesh};
 use crate::compute::CaseModel;
 use crate::compute::gpu::linear::inspect::OnLevel;
 use crate::compute::gpu::{Gpu, GpuContext};
@@ -173,7 +173,7 @@ pub fn a_krylov_cycle_obeys_its_equations(context: &Arc<GpuContext>) {
 
 fn the_cycle_of_a_case_obeys_its_equations(context: &Arc<GpuContext>, models: &[CaseModel], case: usize) {
     let system = system(own_numbers, case, models, true);
-    let System { fixed, rhs, matrix, .. } = &system;
+    let TestSystem { fixed, rhs, matrix, .. } = &system;
     let mut gpu = Gpu::<f64>::new(context.clone(), vec![models[case].clone()]).unwrap();
     let (_, report) = solve(&mut gpu, &[(0, &system)], 1e-4).remove(0);
     let cycle = gpu.solver().unwrap().last_cycle(context).unwrap();

@@ -82,7 +82,7 @@ pub fn models(mesh: &Arc<Mesh>) -> Vec<CaseModel> {
 }
 
 /// One system, and what is asked of it.
-pub struct System {
+pub struct TestSystem {
     displacement: Vec<f64>,
     rows: Vec<Rows<f64>>,
     /// Unknowns that are prescribed.
@@ -105,7 +105,7 @@ pub fn own_numbers(seed: u64) -> Box<dyn FnMut(f64, f64) -> f64> {
 
 /// Points that stick, slide and are open by chance; every other free unknown has a random force,
 /// every fixed one a random displacement.
-pub fn system(numbers: Numbers, case: usize, models: &[CaseModel], masked: bool) -> System {
+pub fn system(numbers: Numbers, case: usize, models: &[CaseModel], masked: bool) -> TestSystem {
     let mesh = &models[case].mesh;
     let mut between = numbers(40 + case as u64);
     let n = 3 * mesh.nodes.len();
@@ -146,10 +146,10 @@ pub fn system(numbers: Numbers, case: usize, models: &[CaseModel], masked: bool)
     plate_functional(&matrix, &boundary.plate, &mut functional);
     apply_contact(&mut matrix, mesh, &rows);
     assert!([Status::Open, Status::Stick, Status::Slip].iter().all(|status| rows.iter().any(|row| row.status == *status)));
-    System { displacement, rows, fixed, rhs, matrix, functional }
+    TestSystem { displacement, rows, fixed, rhs, matrix, functional }
 }
 
-impl System {
+impl TestSystem {
     /// |b - A x| over the free unknowns over the same at x = 0, in f64; fixed unknowns have to be
     /// right.
     pub fn residual(&self, x: &[f64]) -> f64 {
@@ -168,7 +168,7 @@ impl System {
 }
 
 /// What is asked of a system: a side of this tolerance from each guess.
-pub fn asked(system: &System, sides: &[(f64, Vec<f64>)], expected: usize, relative_to_guess: bool) -> linear::System {
+pub fn asked(system: &TestSystem, sides: &[(f64, Vec<f64>)], expected: usize, relative_to_guess: bool) -> linear::SolveRequest {
     let side = |(tolerance, guess): &(f64, Vec<f64>)| Side {
         rhs: system.rhs.clone(),
         tolerance: *tolerance,
@@ -176,21 +176,21 @@ pub fn asked(system: &System, sides: &[(f64, Vec<f64>)], expected: usize, relati
         expected,
         guess: guess.clone(),
     };
-    let System { displacement, rows, fixed, .. } = system;
+    let TestSystem { displacement, rows, fixed, .. } = system;
     let (rows, fixed) = (rows.clone(), fixed.clone());
-    linear::System { displacement: displacement.as_slice().into(), rows, fixed, sides: sides.iter().map(side).collect() }
+    linear::SolveRequest { displacement: displacement.as_slice().into(), rows, fixed, sides: sides.iter().map(side).collect() }
 }
 
 /// The answers to systems of cases.
-pub fn solved(backend: &mut dyn Compute, systems: Vec<(usize, linear::System)>) -> Vec<Solved> {
+pub fn solved(backend: &mut dyn Compute, systems: Vec<(usize, linear::SolveRequest)>) -> Vec<Solved> {
     let answers = backend.call(systems.into_iter().map(|(case, system)| (case, Call::Solve(system.into()))).collect()).unwrap();
     answers.into_iter().map(|answer| if let Answer::Solved(solved) = answer { solved } else { panic!("{answer:?}") }).collect()
 }
 
 /// The solutions of systems of cases, from zero.
-pub fn solve(backend: &mut dyn Compute, systems: &[(usize, &System)], tolerance: f64) -> Vec<(Vec<f64>, SideReport)> {
-    let zeros = |system: &System| vec![0.0; system.rhs.len()];
-    let one = |&(case, system): &(usize, &System)| (case, asked(system, &[(tolerance, zeros(system))], 2, false));
+pub fn solve(backend: &mut dyn Compute, systems: &[(usize, &TestSystem)], tolerance: f64) -> Vec<(Vec<f64>, SideReport)> {
+    let zeros = |system: &TestSystem| vec![0.0; system.rhs.len()];
+    let one = |&(case, system): &(usize, &TestSystem)| (case, asked(system, &[(tolerance, zeros(system))], 2, false));
     let answers = solved(backend, systems.iter().map(one).collect());
     let solution = |mut solved: Solved| {
         assert_eq!((solved.outcome, solved.solutions.len()), (Evaluated::Valid, 1));
@@ -219,8 +219,8 @@ fn meets_tolerances_on<R: DeviceReal>(context: Arc<GpuContext>, numbers: Numbers
     let models = models(mesh);
     let mut gpu = Gpu::<R>::new(context, models.clone()).unwrap();
     for masked in [false, true] {
-        let systems: Vec<System> = (0..CASES).map(|case| system(numbers, case, &models, masked)).collect();
-        let all: Vec<(usize, &System)> = systems.iter().enumerate().collect();
+        let systems: Vec<TestSystem> = (0..CASES).map(|case| system(numbers, case, &models, masked)).collect();
+        let all: Vec<(usize, &TestSystem)> = systems.iter().enumerate().collect();
         for tolerance in [0.1, 1e-2, 1e-3, 1e-5] {
             for (case, (system, (x, report))) in systems.iter().zip(solve(&mut gpu, &all, tolerance)).enumerate() {
                 let mut host = LinearSolver::new(SolverKind::Multigrid, &system.matrix.pattern, &mesh.hierarchy).unwrap();

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::SimulationError;
 use super::equator::FreeEquator;
-use super::path::{Start, Target, way_length};
+use super::path::{SegmentStart, Target, way_length};
 use super::record::{ContactPoint, StepRecord};
 use crate::compute::CaseState;
 use crate::contact::coulomb::Status;
@@ -166,7 +166,7 @@ pub(super) struct PathPosition {
     /// The segment that is followed; their number once all are behind.
     pub segment: usize,
     /// The state at its start, `None` before it.
-    pub start: Option<Start>,
+    pub start: Option<SegmentStart>,
     /// Targets of the segment that are reached.
     pub reached: usize,
     /// The next target has been set out for. Its parts that are still to be reached are `waiting`,

@@ -16,7 +16,7 @@ pub use super::ending::{Ending, Outgrowth};
 use super::equator;
 use super::observer::Displacement;
 pub use super::observer::{Observer, StepView};
-use super::path::{Resolution, Start, Target, indentation_targets, straight_targets};
+use super::path::{Resolution, SegmentStart, Target, indentation_targets, straight_targets};
 use super::problem::Problem;
 use super::record::{ContactPoint, StepRecord};
 use crate::case::{Hold, Scaled, Segment, ShearTarget, unit};
@@ -225,7 +225,7 @@ impl<'a> Drive<'a> {
     }
 
     /// Sets out for the present segment from the committed state.
-    fn begin_segment(&mut self, segment: &Segment) -> Start {
+    fn begin_segment(&mut self, segment: &Segment) -> SegmentStart {
         self.state.record.segment = self.place.segment;
         self.state.last_increment = None;
         let holds_force = match segment {
@@ -260,9 +260,9 @@ impl<'a> Drive<'a> {
         start
     }
 
-    fn start(&self) -> Start {
+    fn start(&self) -> SegmentStart {
         let r = &self.state.record;
-        Start {
+        SegmentStart {
             h: r.h,
             h_max: self.state.h_max,
             delta_t: r.delta_t,

@@ -152,13 +152,13 @@ fn line(points: impl Iterator<Item = (f64, f64, f64)>) -> Option<(f64, f64)> {
 }
 
 /// A profile of the pressure, p^m = at_zero + slope s^2.
-struct Profile {
+struct PressureProfile {
     exponent: f64,
     slope: f64,
     at_zero: f64,
 }
 
-impl Profile {
+impl PressureProfile {
     fn pressure(&self, squared: f64) -> f64 {
         (self.at_zero + self.slope * squared).max(0.0).powf(1.0 / self.exponent)
     }
@@ -193,10 +193,10 @@ fn edge_from_pressure(points: &[Polar], touching: f64, spacing: f64, angle: f64)
     let fit = |exponent: f64| {
         let pressure = |p: &Polar| (p.force / p.area).max(0.0).powf(exponent);
         let (slope, at_zero) = line(ring().map(|p| (p.area, p.s * p.s, pressure(p))))?;
-        Some(Profile { exponent, slope, at_zero })
+        Some(PressureProfile { exponent, slope, at_zero })
     };
     let rim = || points.iter().filter(|p| p.closed && p.s >= inside);
-    let lacking = |profile: &Profile| rim().map(|p| profile.pressure(p.s * p.s) * p.area - p.force).sum::<f64>();
+    let lacking = |profile: &PressureProfile| rim().map(|p| profile.pressure(p.s * p.s) * p.area - p.force).sum::<f64>();
     let [hertz, least] = EXPONENTS;
     let mut profile = fit(hertz)?;
     let missing = lacking(&profile);

@@ -46,7 +46,7 @@ use std::time::{Duration, Instant};
 
 pub use check::{Check, Reference, Scale, Verdict};
 pub use error::VerifyError;
-pub use report::Report;
+pub use report::VerificationReport;
 pub use runner::{BackendFactory, Fineness, Runner};
 
 /// A group of checks that share their cases.

@@ -19,7 +19,7 @@ use crate::compute::call::not_asked;
 use crate::compute::cpu::Cpu;
 use crate::compute::handle::{at, at_contact};
 use crate::compute::iterate::Keeps;
-use crate::compute::linear::{Solved, System};
+use crate::compute::linear::{SolveRequest, Solved};
 use crate::compute::{
     About, Answer, Blocks, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Evaluated,
 };
@@ -225,7 +225,7 @@ impl<R: DeviceReal> Gpu<R> {
     fn solve(&mut self, dispatch: &Dispatch, calls: &mut [(usize, Call)]) -> Result<Vec<Answer>, ComputeError> {
         let increments = self.increments(dispatch, calls)?;
         let system = |&i: &usize| if let (_, Call::Solve(system)) = &calls[i] { Some(&**system) } else { None };
-        let systems: Vec<&System> = dispatch.requests.iter().filter_map(system).collect();
+        let systems: Vec<&SolveRequest> = dispatch.requests.iter().filter_map(system).collect();
         let packed = Packed::new(&systems);
         let (outcomes, answers) = self.batch()?.linear(dispatch, &increments, &packed.rows, &packed.fixed, &packed.sides)?;
         let of_slots = systems.iter().zip(outcomes).enumerate();

@@ -1,7 +1,7 @@
 //! Compiling kernels once, and running them.
 
 use super::arguments::Argument;
-use super::buffers::{Read, StorageBuffer};
+use super::buffers::{ReadBack, StorageBuffer};
 use super::compiled::Pipeline;
 use super::context::GpuContext;
 use super::error::GpuError;
@@ -291,7 +291,7 @@ impl KernelList<'_> {
     /// # Errors
     /// [`GpuError::Stale`], [`GpuError::Lost`], [`GpuError::Timeout`], [`GpuError::Rejected`]: then
     /// no numbers come back at all.
-    pub fn submit_and_read(mut self, reads: &mut [Read<'_>]) -> Result<(), GpuError> {
+    pub fn submit_and_read(mut self, reads: &mut [ReadBack<'_>]) -> Result<(), GpuError> {
         if let Some(stamps) = &self.stamps {
             stamps.resolve(&mut self.encoder);
         }

@@ -4,7 +4,7 @@
 use super::arguments::Argument;
 use super::error::{ArgumentFlaw, GpuError};
 use super::source::Assembled;
-use super::validate::{Checked, validate};
+use super::validate::{ValidSource, validate};
 use naga::valid::GlobalUse;
 use naga::{AddressSpace, StorageAccess};
 
@@ -55,7 +55,7 @@ impl Interface {
     /// # Errors
     /// [`GpuError::Shader`] if it does not compile, or has none.
     pub fn of(source: &Assembled) -> Result<Self, GpuError> {
-        let Checked { module, info } = validate(source)?;
+        let ValidSource { module, info } = validate(source)?;
         let Some(entry) = module.entry_points.first() else {
             return Err(GpuError::Shader { place: source.place(0), message: "there is no entry point".to_owned() });
         };

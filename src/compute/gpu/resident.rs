@@ -10,7 +10,7 @@ use super::layout::{COORDINATES, HISTORY, ON_SYMMETRY_PLANE, PARAMETERS, STATE};
 use super::material::flatten;
 use crate::compute::{CaseModel, ComputeError};
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction};
-use crate::element::hex8::{Geometry, NODES, QUADRATURE_POINTS};
+use crate::element::hex8::{ElementGeometry, NODES, QUADRATURE_POINTS};
 use crate::material::Material;
 use crate::mesh::{Hanging, Mesh};
 
@@ -409,7 +409,7 @@ fn flatten_geometry<R: DeviceReal>(mesh: &Mesh) -> Result<Vec<R>, ComputeError> 
     let (coordinates, volume) = numbers.split_at_mut(COORDINATES * elements);
     for e in 0..elements {
         let positions = mesh.corners(e);
-        let geometry = Geometry::<R>::new(&positions)
+        let geometry = ElementGeometry::<R>::new(&positions)
             .map_err(|invalid| ComputeError::InvertedMesh { element: e, point: invalid.point() })?;
         volume[QUADRATURE_POINTS * e..][..QUADRATURE_POINTS].copy_from_slice(&geometry.volume.0);
         for (a, position) in positions.iter().enumerate() {

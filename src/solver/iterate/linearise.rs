@@ -5,7 +5,7 @@ use super::host::HostIterate;
 use super::{Asked, Correction};
 use crate::compute::call::OfBlocks;
 use crate::compute::handle::CaseHandle;
-use crate::compute::linear::{Ended, Side, SideReport, Solved, System};
+use crate::compute::linear::{Ended, Side, SideReport, SolveRequest, Solved};
 use crate::linalg::{BlockMatrix, LinalgError};
 use crate::mesh::Mesh;
 use crate::solver::SolverError;
@@ -100,7 +100,7 @@ impl HostIterate {
             });
         }
         let (displacement, rows) = (self.current.u.as_slice().into(), self.current.rows.clone());
-        let system = System { displacement, rows, fixed: self.fixed.clone(), sides };
+        let system = SolveRequest { displacement, rows, fixed: self.fixed.clone(), sides };
         let Solved { outcome, solutions } = case.solve(system)?;
         if solutions.is_empty() {
             return Ok(There::NotSolved { krylov: 0 });

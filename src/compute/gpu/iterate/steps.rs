@@ -3,7 +3,7 @@
 use std::sync::PoisonError;
 
 use super::super::batch::Batch;
-use super::super::buffers::{DeviceReal, Read};
+use super::super::buffers::{DeviceReal, ReadBack};
 use super::super::dispatch::{Dispatch, Evaluation, outcomes};
 use super::super::error::GpuError;
 use super::super::layout::AT_POINT;
@@ -108,7 +108,7 @@ impl<R: DeviceReal> Batch<R> {
         list: KernelList<'_>,
         mut solves: Option<&mut Solves>,
         back: &mut Back<R>,
-        and: Option<Read<'_>>,
+        and: Option<ReadBack<'_>>,
     ) -> Result<(), GpuError> {
         let (iterates, linear) = self.iterates()?;
         let told = &iterates.told;

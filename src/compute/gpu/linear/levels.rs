@@ -13,7 +13,7 @@ use super::sources::{
     CYCLE_RESIDUAL, GALERKIN_COARSE, GALERKIN_PRODUCT, INVERT_DIAGONAL, PROLONG, RESTRICT, SMALL_DOWN, SMALL_UP, SMOOTH_START,
     SMOOTH_STEP, SOLVE_COARSEST,
 };
-use crate::linalg::layout::{Layout, LevelLayout, Lists, Rows, TransferLayout};
+use crate::linalg::layout::{HierarchyLayout, LevelLayout, Lists, SparseRows, TransferLayout};
 
 /// What all levels share.
 #[derive(Clone, Copy, Debug)]
@@ -49,13 +49,13 @@ pub struct LevelArrays {
     other: StorageBuffer<f32>,
     last_step: StorageBuffer<f32>,
     residual: StorageBuffer<f32>,
-    transfer: Option<Transfer>,
+    transfer: Option<TransferArrays>,
     nodes: usize,
     width: usize,
 }
 
 #[derive(Debug)]
-struct Transfer {
+struct TransferArrays {
     product_lists: DeviceLists,
     coarse_lists: DeviceLists,
     /// As `transfer.wgsl` has them.
@@ -94,7 +94,7 @@ impl DeviceLists {
 }
 
 /// A matrix as `transfer.wgsl` has it: where each row begins, then columns with their weights.
-fn transfer_rows(rows: &Rows) -> Vec<u32> {
+fn transfer_rows(rows: &SparseRows) -> Vec<u32> {
     let first = rows.start.len() as u32;
     let entries = rows.column.iter().zip(&rows.weight).flat_map(|(&column, weight)| [column, weight.to_bits()]);
     rows.start.iter().map(|start| first + 2 * start).chain(entries).collect()
@@ -114,7 +114,7 @@ pub fn product_numbers(level: &LevelLayout) -> usize {
 pub fn shared_numbers(level: &LevelLayout) -> usize {
     let transfer = level.transfer.as_ref().map_or(0, |t| {
         let lists = |lists: &Lists| lists.start.len() + lists.entry.len() + lists.weight.len();
-        let rows = |rows: &Rows| rows.start.len() + rows.column.len() + rows.weight.len();
+        let rows = |rows: &SparseRows| rows.start.len() + rows.column.len() + rows.weight.len();
         lists(&t.product) + lists(&t.coarse) + rows(&t.prolongation) + rows(&t.restriction)
     });
     level.column.len() + level.diagonal.len() + transfer
@@ -140,7 +140,7 @@ impl LevelArrays {
                     Some(pool) => pool.view("products A P", numbers)?,
                     None => context.zeros("products A P", numbers)?,
                 };
-                Some(Transfer::new(context, transfer, next, product.each(slots))?)
+                Some(TransferArrays::new(context, transfer, next, product.each(slots))?)
             }
             _ => None,
         };
@@ -225,7 +225,7 @@ impl LevelArrays {
     }
 }
 
-impl Transfer {
+impl TransferArrays {
     fn new(
         context: &GpuContext,
         layout: &TransferLayout,
@@ -269,7 +269,7 @@ impl Levels {
     /// What the device says.
     pub fn new(
         context: &GpuContext,
-        layout: &Layout,
+        layout: &HierarchyLayout,
         (slots, pools): (usize, &Pools),
         plate_nodes: usize,
         records: &StorageBuffer<Record>,
@@ -384,7 +384,7 @@ impl Binder<'_> {
         self.call(&INVERT_DIAGONAL, level.nodes, &[&arguments])
     }
 
-    fn galerkin(&self, level: &LevelArrays, transfer: &Transfer, next: &LevelArrays) -> Result<[SizedKernel; 2], GpuError> {
+    fn galerkin(&self, level: &LevelArrays, transfer: &TransferArrays, next: &LevelArrays) -> Result<[SizedKernel; 2], GpuError> {
         let block = &args! { level: level.block };
         let product = args! { given: level.matrix, to: transfer.product, column: level.column, is_fixed: level.fixed };
         let coarse = args! { given: transfer.product, to: next.matrix };
@@ -416,7 +416,7 @@ impl Binder<'_> {
 
     /// Smoothing from zero, which leaves `other` where the number of steps is odd, and what is left
     /// to the next level.
-    fn down(&self, level: &LevelArrays, transfer: &Transfer, next: &LevelArrays) -> Result<Vec<SizedKernel>, GpuError> {
+    fn down(&self, level: &LevelArrays, transfer: &TransferArrays, next: &LevelArrays) -> Result<Vec<SizedKernel>, GpuError> {
         let start = args! {
             level: level.block,
             inverse: level.inverse,
@@ -444,7 +444,7 @@ impl Binder<'_> {
         Ok(out)
     }
 
-    fn restrict(&self, level: &LevelArrays, transfer: &Transfer, next: &LevelArrays) -> Result<SizedKernel, GpuError> {
+    fn restrict(&self, level: &LevelArrays, transfer: &TransferArrays, next: &LevelArrays) -> Result<SizedKernel, GpuError> {
         let arguments = args! {
             level: level.block,
             transfer: transfer.restriction,
@@ -469,18 +469,23 @@ impl Binder<'_> {
     }
 
     /// As [`Binder::down`], by one workgroup a slot; it leaves `x`.
-    fn small_down(&self, level: &LevelArrays, transfer: &Transfer, next: &LevelArrays) -> Result<[SizedKernel; 2], GpuError> {
+    fn small_down(
+        &self,
+        level: &LevelArrays,
+        transfer: &TransferArrays,
+        next: &LevelArrays,
+    ) -> Result<[SizedKernel; 2], GpuError> {
         let residual = args! { residual: level.residual };
         Ok([self.call(&SMALL_DOWN, 1, &[&self.small(level), &residual])?, self.restrict(level, transfer, next)?])
     }
 
     /// As [`Binder::up`], by one workgroup a slot.
-    fn small_up(&self, level: &LevelArrays, transfer: &Transfer, next: &LevelArrays) -> Result<SizedKernel, GpuError> {
+    fn small_up(&self, level: &LevelArrays, transfer: &TransferArrays, next: &LevelArrays) -> Result<SizedKernel, GpuError> {
         self.call(&SMALL_UP, 1, &[&self.small(level), &args! { transfer: transfer.prolongation, coarse: next.x }])
     }
 
     /// The next level's correction, and smoothing, which ends in `x`.
-    fn up(&self, level: &LevelArrays, transfer: &Transfer, next: &LevelArrays) -> Result<Vec<SizedKernel>, GpuError> {
+    fn up(&self, level: &LevelArrays, transfer: &TransferArrays, next: &LevelArrays) -> Result<Vec<SizedKernel>, GpuError> {
         let odd = self.shares.len() % 2 == 1;
         let (mut x, mut free) = if odd { (&level.other, &level.x) } else { (&level.x, &level.other) };
         let arguments = args! {

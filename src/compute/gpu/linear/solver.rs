@@ -1,6 +1,6 @@
 //! The linear solver of a batch's slots.
 
-use super::super::buffers::{DeviceReal, Read, StorageBuffer};
+use super::super::buffers::{DeviceReal, ReadBack, StorageBuffer};
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
 use super::super::pipelines::KernelList;
@@ -197,7 +197,7 @@ impl SlotSolver {
     ///
     /// # Errors
     /// [`GpuError::Length`] for more slots than there are.
-    pub fn read<'a>(&'a self, solves: &'a mut Solves) -> Result<Read<'a>, GpuError> {
+    pub fn read<'a>(&'a self, solves: &'a mut Solves) -> Result<ReadBack<'a>, GpuError> {
         self.arrays.records.read(0, &mut solves.records)
     }
 
