@@ -14,7 +14,7 @@ use asperity::internals::compute::gpu::layout;
 use asperity::internals::compute::gpu::linear::parts::SolvePart;
 use asperity::internals::compute::gpu::material::{self, Answers};
 use asperity::internals::compute::gpu::report::{Surroundings, report};
-use asperity::internals::compute::gpu::source::{Precision, Source};
+use asperity::internals::compute::gpu::source::{Precision, ShaderSource};
 use asperity::internals::compute::gpu::{DeviceRequest, Evaluation, Gpu, GpuContext, GpuError, Kernel, KernelTimes};
 use asperity::internals::compute::traffic::Traffic;
 use asperity::internals::simulation::drive::{Drive, Ending, Observer, StepView};
@@ -30,7 +30,7 @@ use std::time::{Duration, Instant};
 
 static DOUBLE: Kernel = Kernel::new(
     "double",
-    &[Source {
+    &[ShaderSource {
         path: "tests/device_layer.rs",
         text: "
 @group(0) @binding(0) var<storage, read_write> values: array<real>;
@@ -170,7 +170,10 @@ fn what_does_not_fit_is_refused_before_it_is_tried() {
 fn a_fault_of_the_program_is_an_error_with_its_place() {
     static BROKEN: Kernel = Kernel::new(
         "broken",
-        &[Source { path: "shaders/broken.wgsl", text: "@compute @workgroup_size(1)\nfn broken() {\n    let a: real = 1u;\n}\n" }],
+        &[ShaderSource {
+            path: "shaders/broken.wgsl",
+            text: "@compute @workgroup_size(1)\nfn broken() {\n    let a: real = 1u;\n}\n",
+        }],
     );
     let Some(context) = device("device_layer", Precision::F32) else { return };
     let error = context.pipeline(&BROKEN, Precision::F32).unwrap_err();

@@ -13,7 +13,7 @@ use super::{BenchError, Options, ThreadPools};
 use crate::compute::cpu::Cpu;
 use crate::compute::gpu::{DeviceReal, Evaluation, Gpu, GpuContext};
 use crate::compute::handle::at_contact;
-use crate::compute::{Answer, Blocks, Call, CaseModel, Compute, ComputeError, Evaluated};
+use crate::compute::{Answer, Call, CaseModel, Compute, ComputeError, Evaluated, TangentBlocks};
 use crate::memory;
 use crate::mesh::Mesh;
 
@@ -34,7 +34,7 @@ struct Calls {
     displacement: Vec<Arc<[f64]>>,
     /// What the last calls left: internal forces at the contact nodes, and memory for tangents.
     force: Vec<Vec<f64>>,
-    blocks: Vec<Blocks>,
+    blocks: Vec<TangentBlocks>,
 }
 
 impl Calls {
@@ -42,7 +42,7 @@ impl Calls {
         Self {
             displacement: models.iter().map(|m| squeezed(&m.mesh, SQUEEZE[0]).into()).collect(),
             force: vec![vec![0.0; 3 * sizes.contact_points]; models.len()],
-            blocks: vec![Blocks::Double(vec![[0.0; 9]; sizes.blocks]); models.len()],
+            blocks: vec![TangentBlocks::Double(vec![[0.0; 9]; sizes.blocks]); models.len()],
         }
     }
 

@@ -8,7 +8,7 @@ use clap::{Args, Subcommand};
 use serde_json::{Value, json};
 
 use super::contact::ContactArgs;
-use super::input::Input;
+use super::input::InputFile;
 use super::law_check::{LawCheckArgs, check_law};
 use super::law_compose::{ComposeArgs, compose_tables};
 use super::law_export::{ExportArgs, export_law};
@@ -234,7 +234,7 @@ fn predict_case(args: &PredictArgs) -> Result<Exit, CliError> {
         Some(case) => (case, "the contact".to_owned()),
         None => {
             // Clap lets nothing pass without options or a file.
-            let input = Input::read(args.case.as_deref().unwrap_or(Path::new("")))?;
+            let input = InputFile::read(args.case.as_deref().unwrap_or(Path::new("")))?;
             (input.case(&args.set)?, input.name)
         }
     };

@@ -24,7 +24,7 @@ pub enum Device {
 
 /// The floating-point precision of the kernels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Precision {
+pub enum PrecisionOption {
     /// f64 where the device has it.
     #[default]
     Auto,
@@ -88,7 +88,7 @@ pub struct DeviceArgs {
     pub device: Option<Device>,
     /// Floating-point precision of the kernels.
     #[arg(long, value_enum, default_value_t, value_name = "PRECISION")]
-    pub precision: Precision,
+    pub precision: PrecisionOption,
     /// Number of threads; by default all of the machine's.
     #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<NonZeroUsize>,

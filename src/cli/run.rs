@@ -7,7 +7,7 @@ use std::time::Duration;
 use clap::Args;
 
 use super::backend::{device_choice, precision_choice};
-use super::input::Input;
+use super::input::InputFile;
 use super::options::{DeviceArgs, Verbosity, out_or_name};
 use super::signals::stop_flag;
 use super::{CliError, Exit, called};
@@ -58,7 +58,7 @@ pub struct RunArgs {
 pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
     args.verbosity.start_log();
     args.device.start_threads()?;
-    let input = Input::read(&args.case)?;
+    let input = InputFile::read(&args.case)?;
     let case = input.case(&args.set)?;
     let out = out_or_name(args.out.as_ref(), &args.case, "");
     let written = OutputDirectory::existing(&out).case();

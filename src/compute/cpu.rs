@@ -9,7 +9,8 @@ use super::gather::GatherPlan;
 use super::linear::Solved;
 use super::sweep::{Keep, WaveSweep};
 use super::{
-    About, Answer, Blocks, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Evaluated, Fault,
+    About, Answer, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Evaluated, Fault,
+    TangentBlocks,
 };
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, contact_rows};
 use crate::contact::plane::{gap, slip};
@@ -374,14 +375,14 @@ impl<R: Real, T: Real> Cpu<R, T> {
         Answer::Force { force, outcome }
     }
 
-    fn tangent(&mut self, case: usize, displacement: &[f64], blocks: Blocks) -> Answer {
+    fn tangent(&mut self, case: usize, displacement: &[f64], blocks: TangentBlocks) -> Answer {
         let tangents = case.min(self.element_tangent.len() - 1);
         let case = &self.cases[case];
         let assembly = (&self.plan, &self.sweep, self.element_tangent[tangents].as_mut_slice());
         let mut blocks = blocks.resized(self.plan.pattern.entries());
         let outcome = match &mut blocks {
-            Blocks::Double(blocks) => case.tangent(assembly, displacement, blocks),
-            Blocks::Single(blocks) => case.tangent(assembly, displacement, blocks),
+            TangentBlocks::Double(blocks) => case.tangent(assembly, displacement, blocks),
+            TangentBlocks::Single(blocks) => case.tangent(assembly, displacement, blocks),
         };
         Answer::Tangent { blocks, outcome }
     }

@@ -31,7 +31,7 @@ pub mod wrong;
 #[cfg(test)]
 mod tests;
 
-pub use call::{Answer, Blocks, Call};
+pub use call::{Answer, Call, TangentBlocks};
 pub use error::ComputeError;
 pub use evaluated::{Evaluated, Fault};
 use iterate::Keeps;

@@ -5,7 +5,7 @@ mod hanging;
 
 use std::sync::Arc;
 
-use super::call::{Answer, Blocks, Call};
+use super::call::{Answer, Call, TangentBlocks};
 use super::cpu::Cpu;
 use super::handle::{CaseHandle, at};
 use super::{CaseModel, Compute, ComputeError, Energies, Evaluated, Fault};
@@ -214,9 +214,10 @@ fn a_batch_gives_each_case_what_it_gets_alone() {
         let u: Vec<_> = meshes.iter().map(|m| displacement(m, 1e-3)).collect();
         let all = |call: fn(&[f64]) -> Call| u.iter().enumerate().map(|(case, u)| (case, call(u))).collect();
         let forces = together.call(all(|u| Call::Force { displacement: u.into() })).unwrap();
-        let tangents = together.call(all(|u| Call::Tangent { displacement: u.into(), blocks: Blocks::Double(vec![]) })).unwrap();
+        let tangents =
+            together.call(all(|u| Call::Tangent { displacement: u.into(), blocks: TangentBlocks::Double(vec![]) })).unwrap();
         for (case, answers) in forces.iter().zip(&tangents).enumerate() {
-            let (Answer::Force { force, .. }, Answer::Tangent { blocks: Blocks::Double(blocks), .. }) = answers else {
+            let (Answer::Force { force, .. }, Answer::Tangent { blocks: TangentBlocks::Double(blocks), .. }) = answers else {
                 panic!("{answers:?}");
             };
             assert!(bits(force) == alone[case].0[0].force, "force of case {case}");

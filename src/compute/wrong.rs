@@ -2,7 +2,7 @@
 //! program and by themselves.
 
 use super::handle::at;
-use super::{About, Answer, Blocks, Call, CaseModel, Compute, ComputeError, Energies, Evaluated, Fault};
+use super::{About, Answer, Call, CaseModel, Compute, ComputeError, Energies, Evaluated, Fault, TangentBlocks};
 use crate::material::Refusal;
 
 /// The environment variable of the hook, which only builds with debug assertions look at, those of
@@ -108,11 +108,11 @@ impl<C: Compute> Wrong<C> {
             }
             // In the middle of the matrix: the first rows may be prescribed ones, which nobody
             // reads.
-            Answer::Tangent { blocks: Blocks::Double(blocks), .. } if self.is(Kind::Tangent) => {
+            Answer::Tangent { blocks: TangentBlocks::Double(blocks), .. } if self.is(Kind::Tangent) => {
                 let middle = blocks.len() / 2;
                 blocks[middle] = [f64::NAN; 9];
             }
-            Answer::Tangent { blocks: Blocks::Single(blocks), .. } if self.is(Kind::Tangent) => {
+            Answer::Tangent { blocks: TangentBlocks::Single(blocks), .. } if self.is(Kind::Tangent) => {
                 let middle = blocks.len() / 2;
                 blocks[middle] = [f32::NAN; 9];
             }

@@ -3,7 +3,7 @@
 use crate::compute::cpu::Cpu;
 use crate::compute::gpu::{DeviceReal, Gpu, GpuContext};
 use crate::compute::handle::at_contact;
-use crate::compute::{Answer, Blocks, Call, CaseModel, Compute, Energies, Evaluated};
+use crate::compute::{Answer, Call, CaseModel, Compute, Energies, Evaluated, TangentBlocks};
 use crate::contact::coulomb::{Friction, Rows};
 use crate::material::{Elasticity, FlowStress, Material};
 use crate::mesh::brick::brick;
@@ -150,9 +150,10 @@ pub fn forces(backend: &mut dyn Compute, displacements: &Displacements) -> Vec<(
 
 /// Their tangents, in f64.
 pub fn tangents(backend: &mut dyn Compute, displacements: &Displacements) -> Vec<(Evaluated, Vec<[f64; 9]>)> {
-    let answers = call(backend, displacements, |displacement| Call::Tangent { displacement, blocks: Blocks::Double(Vec::new()) });
+    let answers =
+        call(backend, displacements, |displacement| Call::Tangent { displacement, blocks: TangentBlocks::Double(Vec::new()) });
     let tangent = |answer| match answer {
-        Answer::Tangent { blocks: Blocks::Double(blocks), outcome } => (outcome, blocks),
+        Answer::Tangent { blocks: TangentBlocks::Double(blocks), outcome } => (outcome, blocks),
         other => panic!("{other:?}"),
     };
     answers.into_iter().map(tangent).collect()

@@ -15,9 +15,9 @@ pub trait PointBackend<R> {
 }
 
 /// The CPU.
-pub struct Cpu;
+pub struct CpuPoints;
 /// A device.
-pub struct Gpu(pub Arc<GpuContext>);
+pub struct GpuPoints(pub Arc<GpuContext>);
 
 /// How far from the reference a backend may be.
 pub struct Bounds {
@@ -34,13 +34,13 @@ impl Bounds {
     pub const F32: Self = Self { agreement: 1e-5, equations: 1e-5 };
 }
 
-impl<R: DeviceReal> PointBackend<R> for Gpu {
+impl<R: DeviceReal> PointBackend<R> for GpuPoints {
     fn map(&self, materials: &[Material<R>], points: usize, relative: &[R], committed: &[R]) -> Answers<R> {
         return_mapping(&self.0, materials, points, relative, committed).unwrap()
     }
 }
 
-impl<R: Real> PointBackend<R> for Cpu {
+impl<R: Real> PointBackend<R> for CpuPoints {
     fn map(&self, materials: &[Material<R>], points: usize, relative: &[R], committed: &[R]) -> Answers<R> {
         let cases = materials.len();
         let mut all = Answers {
@@ -200,7 +200,7 @@ pub fn agrees_with_the_reference<R: Real, B: PointBackend<R>>(backend: &B, bound
     let reference_materials = materials::<f64>();
     let (relative, committed) = inputs::<R>(&reference_materials, 5);
     let ours = backend.map(&materials::<R>(), POINTS, &relative, &committed);
-    let reference = Cpu.map(&reference_materials, POINTS, &widen(&relative), &widen(&committed));
+    let reference = CpuPoints.map(&reference_materials, POINTS, &widen(&relative), &widen(&committed));
     let (answer, tangent) = (widen(&ours.answer), widen(&ours.tangent));
     let (mut worst, mut yielding) = ((0.0, String::new()), 0);
     for (case, material) in reference_materials.iter().enumerate() {
@@ -351,7 +351,7 @@ pub fn is_deterministic<R: Real, B: PointBackend<R>>(backend: &B, _: &Bounds) {
 /// Forty steps of a closed strain cycle, the state handed on by the backend: errors must not pile
 /// up.
 pub fn follows_a_cycle<R: Real, B: PointBackend<R>>(backend: &B, bounds: &Bounds) {
-    let (ours, reference) = (cycle(backend, &materials::<R>()), cycle(&Cpu, &materials::<f64>()));
+    let (ours, reference) = (cycle(backend, &materials::<R>()), cycle(&CpuPoints, &materials::<f64>()));
     for (case, material) in materials::<f64>().iter().enumerate() {
         let (ours, reference) = (&ours[case], &reference[case]);
         let scale = reference.iter().fold(0.0f64, |m, x| m.max(x.abs()));

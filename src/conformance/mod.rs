@@ -102,7 +102,7 @@ macro_rules! in_both {
 /// f32.
 pub fn comparisons(has_double: bool) -> Vec<Comparison> {
     let mut all: Vec<Comparison> = Vec::with_capacity(32);
-    in_both!(all, material, material::Gpu:
+    in_both!(all, material, material::GpuPoints:
         "return mapping" agrees_with_the_reference,
         "return mapping: its equations" obeys_its_equations,
         "return mapping: points without an answer" reports_what_has_no_answer,

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::SimulationError;
 use super::equator::FreeEquator;
 use super::path::{SegmentStart, Target, way_length};
-use super::record::{ContactPoint, StepRecord};
+use super::record::{RecordedPoint, StepRecord};
 use crate::compute::CaseState;
 use crate::contact::coulomb::Status;
 use crate::mesh::Mesh;
@@ -51,7 +51,7 @@ pub(super) struct Committed {
     /// Gap at each contact node.
     pub gaps: Vec<f64>,
     #[serde(skip)]
-    pub points: Vec<ContactPoint>,
+    pub points: Vec<RecordedPoint>,
     pub record: StepRecord,
     pub h_max: f64,
     /// Longest elastic recovery of any state so far.
@@ -142,7 +142,7 @@ impl Committed {
             let (base, x) = (3 * node as usize, mesh.nodes[node as usize]);
             let on_symmetry_plane = mesh.is_on_symmetry_plane(node);
             let exerted = [force[base], if on_symmetry_plane { 0.0 } else { force[base + 1] }, force[base + 2]];
-            ContactPoint {
+            RecordedPoint {
                 node: node as usize,
                 reference: x,
                 position: [x[0] + u[base], x[1] + u[base + 1], x[2] + u[base + 2]],

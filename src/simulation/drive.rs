@@ -18,7 +18,7 @@ use super::observer::Displacement;
 pub use super::observer::{Observer, StepView};
 use super::path::{Resolution, SegmentStart, Target, indentation_targets, straight_targets};
 use super::problem::Problem;
-use super::record::{ContactPoint, StepRecord};
+use super::record::{RecordedPoint, StepRecord};
 use crate::case::{Hold, Scaled, Segment, ShearTarget, unit};
 use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::{Ask, Keeps, Plate, Settled};
@@ -402,7 +402,7 @@ impl<'a> Drive<'a> {
     /// One Newton solve in which open points and those slide whose tangential force exceeds `ratio`
     /// times their normal one.
     fn slide_beyond(&mut self, ratio: f64, target: &Target) -> Result<StepOutcome, SimulationError> {
-        let beyond = |p: &ContactPoint| p.status == Status::Open || p.force[0].hypot(p.force[1]) > ratio * p.force[2];
+        let beyond = |p: &RecordedPoint| p.status == Status::Open || p.force[0].hypot(p.force[1]) > ratio * p.force[2];
         let sliding: Vec<bool> = self.state.points.iter().map(beyond).collect();
         self.newton.set_sliding(&sliding);
         self.attempt(target)

@@ -44,7 +44,7 @@ mod spence;
 
 use std::time::{Duration, Instant};
 
-pub use check::{Check, Reference, Scale, Verdict};
+pub use check::{Check, HeldAgainst, Scale, Verdict};
 pub use error::VerifyError;
 pub use report::VerificationReport;
 pub use runner::{BackendFactory, Fineness, Runner};

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Check, Reference, Verdict, VerificationReport};
+use super::{Check, HeldAgainst, Verdict, VerificationReport};
 
 /// A number with about four digits, in the notation that is shorter.
 fn number(x: f64) -> String {
@@ -13,13 +13,13 @@ fn number(x: f64) -> String {
     }
 }
 
-fn reference(reference: &Reference) -> String {
+fn reference(reference: &HeldAgainst) -> String {
     match *reference {
-        Reference::Value(value) => number(value),
-        Reference::Range(low, f64::INFINITY) => format!(">= {}", number(low)),
-        Reference::Range(f64::NEG_INFINITY, high) => format!("<= {}", number(high)),
-        Reference::Nothing => "-".to_owned(),
-        Reference::Range(low, high) => format!("{} to {}", number(low), number(high)),
+        HeldAgainst::Value(value) => number(value),
+        HeldAgainst::Range(low, f64::INFINITY) => format!(">= {}", number(low)),
+        HeldAgainst::Range(f64::NEG_INFINITY, high) => format!("<= {}", number(high)),
+        HeldAgainst::Nothing => "-".to_owned(),
+        HeldAgainst::Range(low, high) => format!("{} to {}", number(low), number(high)),
     }
 }
 

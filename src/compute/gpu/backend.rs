@@ -21,7 +21,7 @@ use crate::compute::handle::{at, at_contact};
 use crate::compute::iterate::Keeps;
 use crate::compute::linear::{SolveRequest, Solved};
 use crate::compute::{
-    About, Answer, Blocks, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Evaluated,
+    About, Answer, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Evaluated, TangentBlocks,
 };
 use crate::contact::coulomb::{CONTACT_WEIGHT, Rows};
 use crate::contact::plane::slip;
@@ -193,8 +193,8 @@ impl<R: DeviceReal> Gpu<R> {
             if outcome == Evaluated::Valid {
                 let upper = |component, block| upper.at((slot * 9 + component) * count + block);
                 match &mut blocks {
-                    Blocks::Double(blocks) => mirror(&batch.plan.source, upper, blocks),
-                    Blocks::Single(blocks) => mirror(&batch.plan.source, upper, blocks),
+                    TangentBlocks::Double(blocks) => mirror(&batch.plan.source, upper, blocks),
+                    TangentBlocks::Single(blocks) => mirror(&batch.plan.source, upper, blocks),
                 }
             }
             answers.push(Answer::Tangent { blocks, outcome });

@@ -130,11 +130,11 @@ pub fn unmet(limits: &KernelLimits) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compute::gpu::source::Source;
+    use crate::compute::gpu::source::ShaderSource;
 
     static SHARING: Kernel = Kernel::new(
         "sharing",
-        &[Source {
+        &[ShaderSource {
             path: "tests",
             text: "
 struct Block { a: vec4<u32>, b: real }

@@ -28,7 +28,7 @@ pub use corners::Corners;
 pub use couple::couple;
 pub use hanging::Hanging;
 pub use hierarchy::Prolongation;
-pub use parts::{Couple, Half};
+pub use parts::{Couple, MirrorHalf};
 pub use sphere::{
     FINE_ZONES, FINEST_SURFACE, FIRST_LAYERS, LARGEST_CONTACT, LARGEST_FINE_RADIUS, SphereSpec, element_count, flat_mesh,
     opponent_mesh, sphere_mesh,
@@ -99,7 +99,7 @@ pub struct Mesh {
     /// Interpolations, finest first; empty if the mesh has no hierarchy.
     pub hierarchy: Vec<Prolongation>,
     /// The half at x >= 0, if no element crosses x = 0.
-    pub half: Option<Half>,
+    pub half: Option<MirrorHalf>,
     /// Contact radius up to which the surface is finely meshed.
     pub fine_radius: f64,
     /// Where the opponent begins, if the mesh is of two bodies.

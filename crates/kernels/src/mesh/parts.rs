@@ -5,7 +5,7 @@ use super::hierarchy::Prolongation;
 /// The half at x >= 0 of a mesh that is its own mirror image in x: all of a body that moves evenly,
 /// or oddly, in x.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Half {
+pub struct MirrorHalf {
     /// Node of the whole mesh, for each node of the half.
     pub node: Vec<u32>,
     /// Interpolations of the half, finest first. Nodes at x = 0 take from nodes at x = 0 alone.
@@ -26,7 +26,7 @@ pub struct Couple {
     /// Interpolations of the sphere and of the opponent, finest first.
     pub hierarchies: [Vec<Prolongation>; 2],
     /// The half of each at x >= 0, in numbers of its own nodes.
-    pub halves: [Option<Half>; 2],
+    pub halves: [Option<MirrorHalf>; 2],
 }
 
 impl Couple {

@@ -5,7 +5,7 @@
 //! is the whole of the half's.
 
 use super::connectivity::{node_elements, sweep_order};
-use super::{Half, Hanging, Mesh, Prolongation};
+use super::{Hanging, Mesh, MirrorHalf, Prolongation};
 
 /// Numbers of the image of each node of a half.
 struct MirrorNumbers {
@@ -87,9 +87,9 @@ pub fn whole(half: &Mesh) -> Mesh {
 }
 
 /// What of both halves is at x >= 0, from that of one.
-fn of_both(right: &Half, nodes: &[[f64; 3]], image: &MirrorNumbers) -> Half {
+fn of_both(right: &MirrorHalf, nodes: &[[f64; 3]], image: &MirrorNumbers) -> MirrorHalf {
     let is_shared = right.node.iter().map(|&n| nodes[n as usize][1] == 0.0).collect();
-    Half { node: image.with_images(&right.node), hierarchy: levels(&right.hierarchy, is_shared) }
+    MirrorHalf { node: image.with_images(&right.node), hierarchy: levels(&right.hierarchy, is_shared) }
 }
 
 /// The levels of both halves, from those of one and from what of its finest nodes lies at y = 0.
