@@ -29,7 +29,8 @@ const WAVE_CHUNK: usize = 16;
 /// Change of an element's displacement gradient within a step up to which a tangent in single
 /// precision that was formed before is taken again. It is off by about as much, a thousandth of
 /// what linear systems are solved to; at ten times that, converged forces were 4e-6 from those of a
-/// device, which forms all anew. What yields, or is soon to, is formed anew.
+/// device, which forms all anew. What yields, or is soon to, is formed anew. Half and twice of it:
+/// `benches/constants`.
 const SAME_TANGENT: f64 = 1e-4;
 /// Up to this bulk over shear modulus, that of nu = 0.3; beyond, the more volume outweighs shape,
 /// the less, as linear systems are solved to less (see `solver::loosest_linear`).

@@ -16,11 +16,12 @@ use crate::solver::pose::MODES;
 use crate::solver::{Control, SolverError, StepOutcome};
 
 /// A step is taken with coefficients that are off by so much of the largest so far. The whole of
-/// them takes 7 % of F_N away in an elastic contact at h = 0.1 R.
+/// them takes 7 % of F_N away in an elastic contact at h = 0.1 R. Half and twice of it:
+/// `benches/constants`.
 const NEAR: f64 = 0.01;
 
 /// A step is solved so many times more at most; the error of the coefficients falls by a factor of
-/// ten or more in each.
+/// ten or more in each. Half and twice of it: `benches/constants`.
 const REPEATS: usize = 4;
 
 /// The coefficients of a plate that is free.

@@ -64,7 +64,7 @@ pub struct Resolution {
 /// points begin to slip.
 pub const SHEAR_GROWTH: f64 = 1.3;
 /// The growing increments end at this many elastic slip displacements (full slip was seen at 3.3 of
-/// them in fully plastic contacts).
+/// them in fully plastic contacts). Half and twice of it: `benches/constants`.
 const SHEAR_RANGE: f64 = 4.5;
 /// Friction beyond which the yield stress in shear, not friction, limits the traction: k/p =
 /// 0.577/2.8, with a margin.
@@ -76,7 +76,8 @@ pub const RELEASE_STEPS: f64 = 12.0;
 /// No increment of a shear is longer than this share of the contact radius; where everything slips
 /// those of a shear of given length go on growing up to it. What comes into contact or leaves it
 /// while it slips makes an error of the first order in this share: at friction 0.95 and h/R = 0.07,
-/// where sticking contacts allow increments five times as long, F_T is 7 % off with those.
+/// where sticking contacts allow increments five times as long, F_T is 7 % off with those. Half and
+/// twice of it: `benches/constants`.
 const LARGEST_SHEAR_STEP: f64 = 0.05;
 /// No step turns the sphere by more than this angle, in rad: what slips is moved along a chord in
 /// it, and friction would point beside the way by half of the angle.

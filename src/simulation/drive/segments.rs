@@ -11,10 +11,12 @@ use crate::simulation::path::{SegmentStart, ShearSteps, Target};
 use crate::simulation::record::StepRecord;
 use crate::solver::iterate::stiffness::SetOff;
 
-/// Full slip: the sticking points carry no more than this share of the normal force.
+/// Full slip: the sticking points carry no more than this share of the normal force. Half and twice
+/// of it: `benches/constants`.
 const STICK_SHARE: f64 = 2e-3;
 /// A release to a share of F_N asks for the force itself when so many steps are left by the
-/// contact's stiffness, which the simulated one exceeds by a fifth at most.
+/// contact's stiffness, which the simulated one exceeds by a fifth at most. Half and twice of it:
+/// `benches/constants`.
 const LANDING: f64 = 1.25;
 /// F_T has stopped rising when it grows by less than this share over a step.
 const PLATEAU: f64 = 1e-3;

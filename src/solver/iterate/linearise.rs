@@ -19,7 +19,8 @@ use crate::solver::systems::Matrix;
 use crate::solver::trial::Trial;
 
 /// Share of the forces at the contact to which the response to a unit indentation is solved, which
-/// gives the change of h that a missing normal force asks for.
+/// gives the change of h that a missing normal force asks for. Half and twice of it:
+/// `benches/constants`.
 pub(super) const UNIT_RESPONSE: f64 = 0.01;
 
 /// Krylov iterations that the first system of a step is expected to take.

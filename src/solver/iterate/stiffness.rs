@@ -19,7 +19,7 @@ use crate::solver::system::fixed_unknowns;
 use crate::solver::systems::{Matrix, OneBody, Systems};
 
 /// Share of the forces at the contact to which the responses to a unit motion are solved. What they
-/// lack counts twice in their energies.
+/// lack counts twice in their energies. Half and twice of it: `benches/constants`.
 const UNIT_MOTION: f64 = 1e-3;
 /// Systems that are solved at most, and the change of the stiffness at which another would find
 /// nothing new.
