@@ -57,7 +57,7 @@ macro_rules! for_a_device {
 
 use asperity::internals::conformance::{batch, material as points};
 
-for_every_backend!(material, crate::points::Cpu, crate::points::Gpu:
+for_every_backend!(material, crate::points::CpuPoints, crate::points::GpuPoints:
     agrees_with_the_reference,
     obeys_its_equations,
     reports_what_has_no_answer,

@@ -11,10 +11,10 @@ use asperity::internals::compute::gpu::adapters::adapters;
 use asperity::internals::compute::gpu::arguments::Argument;
 use asperity::internals::compute::gpu::error::ArgumentFlaw;
 use asperity::internals::compute::gpu::layout;
-use asperity::internals::compute::gpu::linear::parts::Part;
+use asperity::internals::compute::gpu::linear::parts::SolvePart;
 use asperity::internals::compute::gpu::material::{self, Answers};
 use asperity::internals::compute::gpu::report::{Surroundings, report};
-use asperity::internals::compute::gpu::source::{Precision, Source};
+use asperity::internals::compute::gpu::source::{Precision, ShaderSource};
 use asperity::internals::compute::gpu::{DeviceRequest, Evaluation, Gpu, GpuContext, GpuError, Kernel, KernelTimes};
 use asperity::internals::compute::traffic::Traffic;
 use asperity::internals::simulation::drive::{Drive, Ending, Observer, StepView};
@@ -30,7 +30,7 @@ use std::time::{Duration, Instant};
 
 static DOUBLE: Kernel = Kernel::new(
     "double",
-    &[Source {
+    &[ShaderSource {
         path: "tests/device_layer.rs",
         text: "
 @group(0) @binding(0) var<storage, read_write> values: array<real>;
@@ -170,7 +170,10 @@ fn what_does_not_fit_is_refused_before_it_is_tried() {
 fn a_fault_of_the_program_is_an_error_with_its_place() {
     static BROKEN: Kernel = Kernel::new(
         "broken",
-        &[Source { path: "shaders/broken.wgsl", text: "@compute @workgroup_size(1)\nfn broken() {\n    let a: real = 1u;\n}\n" }],
+        &[ShaderSource {
+            path: "shaders/broken.wgsl",
+            text: "@compute @workgroup_size(1)\nfn broken() {\n    let a: real = 1u;\n}\n",
+        }],
     );
     let Some(context) = device("device_layer", Precision::F32) else { return };
     let error = context.pipeline(&BROKEN, Precision::F32).unwrap_err();
@@ -375,7 +378,7 @@ fn neither_a_profile_nor_pieces_change_a_bit_of_a_run() {
             let mut gpu = Gpu::<f64>::with_tangents_in_single(context.clone(), vec![problem.model.clone()]).unwrap();
             let ending = Drive::new(&problem, &mut gpu, 0, problem.newton().unwrap()).run(&mut bits).unwrap();
             assert!(matches!(ending, Ending::Done), "{name}: {ending:?}");
-            let product = gpu.solver().unwrap().account(Part::Product);
+            let product = gpu.solver().unwrap().account(SolvePart::Product);
             let product = bits.1 * 4 * (product.numbers + product.shared);
             let cost = (begun.elapsed().as_secs_f64(), product as u64, context.pieces_sent_ahead());
             (bits.0, gpu.about().traffic.unwrap(), context.kernel_times(), cost)

@@ -12,7 +12,7 @@ use asperity::internals::compute::gpu::kernel::Kernel;
 use asperity::internals::compute::gpu::kernels::KERNELS;
 use asperity::internals::compute::gpu::reflect::Binding;
 use asperity::internals::compute::gpu::source::Precision;
-use asperity::internals::compute::gpu::validate::{Checked, validate};
+use asperity::internals::compute::gpu::validate::{ValidSource, validate};
 
 const ICD: &str = "/usr/share/vulkan/icd.d/radeon_icd.x86_64.json";
 /// Vector registers with which a SIMD holds eight waves at a time.
@@ -53,7 +53,7 @@ impl Radv {
 
     /// The compiler's statistics of a kernel, by name.
     unsafe fn statistics(&self, kernel: &Kernel, precision: Precision) -> Vec<(String, u64)> {
-        let Checked { module, info } = validate(&kernel.assemble(precision)).unwrap();
+        let ValidSource { module, info } = validate(&kernel.assemble(precision)).unwrap();
         // As release builds compile them: without bounds checks.
         let unchecked = naga::proc::BoundsCheckPolicy::Unchecked;
         let policies = naga::proc::BoundsCheckPolicies {

@@ -7,7 +7,7 @@
 mod device;
 
 use asperity::internals::compute::gpu::shader_sources::MATH;
-use asperity::internals::compute::gpu::source::Source;
+use asperity::internals::compute::gpu::source::ShaderSource;
 use asperity::internals::compute::gpu::{DeviceReal, GpuContext, Kernel};
 use device::device;
 use rand::{RngExt, SeedableRng};
@@ -19,7 +19,7 @@ static TABULATE: Kernel = Kernel::new(
     "tabulate",
     &[
         MATH,
-        Source {
+        ShaderSource {
             path: "tests/shader_math.rs",
             text: "
 @group(0) @binding(0) var<storage, read> arguments: array<real>;

@@ -6,10 +6,10 @@ mod lint;
 
 use asperity::internals::compute::gpu::kernel::Kernel;
 use asperity::internals::compute::gpu::kernels::KERNELS;
-use asperity::internals::compute::gpu::reflect::{Binding, Interface};
+use asperity::internals::compute::gpu::reflect::{Binding, KernelInterface};
 use asperity::internals::compute::gpu::shader_sources::{MATH, TENSOR};
-use asperity::internals::compute::gpu::source::{Assembled, Precision, Source};
-use asperity::internals::compute::gpu::validate::{Checked, validate};
+use asperity::internals::compute::gpu::source::{Assembled, Precision, ShaderSource};
+use asperity::internals::compute::gpu::validate::{ValidSource, validate};
 use asperity::material::HardeningLaw;
 use lint::Rule;
 use std::io::Write;
@@ -67,9 +67,9 @@ fn hardening_laws_have_the_codes_of_the_program() {
 #[test]
 fn every_kernel_has_one_entry_point_of_its_name_and_takes_the_same_in_both_precisions() {
     each_kernel(|kernel, precision, source| {
-        let Checked { module, .. } = validate(source).unwrap();
+        let ValidSource { module, .. } = validate(source).unwrap();
         assert_eq!(module.entry_points.len(), 1, "{}", kernel.name);
-        let (entry, interface) = (&module.entry_points[0], Interface::of(source).unwrap());
+        let (entry, interface) = (&module.entry_points[0], KernelInterface::of(source).unwrap());
         assert_eq!((entry.name.as_str(), entry.workgroup_size), (kernel.name, [interface.workgroup, 1, 1]));
         // Arguments are bound to group 0 alone, and to what a shader may call a binding.
         for (_, variable) in module.global_variables.iter().filter(|(_, variable)| variable.binding.is_some()) {
@@ -119,7 +119,7 @@ fn private_arrays_stay_small() {
 fn rules(precision: Precision, text: &'static str) -> Vec<(String, Rule)> {
     let prelude = KERNELS[0].assemble(precision);
     let prelude: &'static str = prelude.text[..prelude.shared_start()].to_owned().leak();
-    let parts = [Source { path: "prelude", text: prelude }, MATH, TENSOR, Source { path: "snippet", text }];
+    let parts = [ShaderSource { path: "prelude", text: prelude }, MATH, TENSOR, ShaderSource { path: "snippet", text }];
     let findings = lint::lint(&Assembled::new(precision, &parts)).unwrap_or_else(|e| panic!("{text}: {e}"));
     findings.into_iter().map(|f| (f.place, f.rule)).collect()
 }
@@ -163,8 +163,8 @@ fn the_lint_rejects_what_it_must() {
 fn frexp_is_refused_in_f64() {
     let prelude = KERNELS[0].assemble(Precision::F64);
     let prelude: &'static str = prelude.text[..prelude.shared_start()].to_owned().leak();
-    let snippet = Source { path: "snippet", text: "fn f(x: real) -> real {\n return frexp(x).fract;\n}" };
-    assert!(lint::lint(&Assembled::new(Precision::F64, &[Source { path: "prelude", text: prelude }, snippet])).is_err());
+    let snippet = ShaderSource { path: "snippet", text: "fn f(x: real) -> real {\n return frexp(x).fract;\n}" };
+    assert!(lint::lint(&Assembled::new(Precision::F64, &[ShaderSource { path: "prelude", text: prelude }, snippet])).is_err());
 }
 
 #[test]
@@ -186,7 +186,7 @@ fn the_spirv_is_valid() {
     }
     let folder = tempfile::tempdir().unwrap();
     each_kernel(|kernel, precision, source| {
-        let Checked { module, info } = validate(source).unwrap();
+        let ValidSource { module, info } = validate(source).unwrap();
         let options = naga::back::spv::Options { lang_version: (1, 3), ..Default::default() };
         let words = naga::back::spv::write_vec(&module, &info, &options, None).unwrap();
         let path = folder.path().join(format!("{}_{precision}.spv", kernel.name));

@@ -26,9 +26,9 @@ mod _asperity {
     #[pymodule_export]
     use super::law::{NativeLaw, fit_law, interpolate_law, table_law, table_study};
     #[pymodule_export]
-    use super::pictures::{NativePicture, program, run_picture};
+    use super::pictures::{NativePicture, program};
     #[pymodule_export]
-    use super::results::{history, resolved_case};
+    use super::results::{history, resolved_case, run_picture};
     #[pymodule_export]
     use super::run::{run, study};
     use super::*;

@@ -5,14 +5,12 @@ use std::str::FromStr;
 
 use asperity::case::{Case, PictureFormat, PictureWidth};
 use asperity::contact_law::path::PathPoint;
-use asperity::law::plots::{as_step, beside_run};
-use asperity::output::plots::{Picture, PlotInputs, Sheet, View, plot_forces, plot_indentation, plot_ratio, replot};
-use asperity::output::{OutputDirectory, StepRecord, read_history};
+use asperity::law::plots::as_step;
+use asperity::output::StepRecord;
+use asperity::output::plots::{Picture, PlotInputs, Sheet, View, plot_forces, plot_indentation, plot_ratio};
 use pyo3::prelude::*;
 
 use crate::errors::{failed, refused};
-use crate::law::NativeLaw;
-use crate::process::compute;
 
 /// A picture as an SVG, with what it shows.
 #[pyclass(name = "NativePicture", frozen)]
@@ -42,7 +40,8 @@ impl NativePicture {
     }
 }
 
-fn view(case: &Case, width: Option<&str>, title: bool) -> PyResult<View> {
+/// How a case is drawn.
+pub fn view(case: &Case, width: Option<&str>, title: bool) -> PyResult<View> {
     let width = match width {
         None => case.output.plot_width,
         Some(text) => {
@@ -54,7 +53,7 @@ fn view(case: &Case, width: Option<&str>, title: bool) -> PyResult<View> {
 }
 
 /// The one of this name; without one the first that there is of `FIRST`.
-fn chosen(mut pictures: Vec<Picture>, name: Option<&str>) -> PyResult<NativePicture> {
+pub fn chosen(mut pictures: Vec<Picture>, name: Option<&str>) -> PyResult<NativePicture> {
     const FIRST: [&str; 5] = ["law", "forces", "plane", "moments", "indentation"];
     let at = |name: &str| pictures.iter().position(|picture| picture.name == name);
     let index = match name {
@@ -65,30 +64,6 @@ fn chosen(mut pictures: Vec<Picture>, name: Option<&str>) -> PyResult<NativePict
         None => FIRST.into_iter().find_map(at).ok_or_else(|| failed("there is nothing to draw yet"))?,
     };
     Ok(NativePicture { picture: pictures.swap_remove(index) })
-}
-
-/// A picture of a run, of its directory.
-#[pyfunction]
-pub fn run_picture(
-    py: Python<'_>,
-    dir: PathBuf,
-    name: Option<&str>,
-    law: Option<&NativeLaw>,
-    width: Option<&str>,
-    title: bool,
-) -> PyResult<NativePicture> {
-    let out = OutputDirectory::existing(dir);
-    let case = out.load_case().map_err(failed)?;
-    let view = view(&case, width, title)?;
-    let pictures = compute(py, || -> PyResult<Vec<Picture>> {
-        let history = read_history(&out.history()).map_err(failed)?;
-        let mut pictures = replot(&out, &case, &history, &view).map_err(failed)?;
-        if let Some(law) = law {
-            pictures.push(beside_run(law.file(), &case, &history, &view).map_err(failed)?.0);
-        }
-        Ok(pictures)
-    })??;
-    chosen(pictures, name)
 }
 
 /// A picture of what a law predicts along the path of a case.

@@ -1,12 +1,17 @@
-//! Reads back what a run has written.
+//! Reads back what a run has written, and draws it.
 
 use std::path::PathBuf;
 
+use asperity::law::plots::beside_run;
+use asperity::output::plots::{Picture, replot};
 use asperity::output::{OutputDirectory, StepRecord, read_history};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::errors::failed;
+use crate::law::NativeLaw;
+use crate::pictures::{NativePicture, chosen, view};
+use crate::process::compute;
 
 /// The columns of a history, in the order of the file, as names and arrays: whole numbers as int64,
 /// others as float64.
@@ -34,4 +39,28 @@ pub fn history(py: Python<'_>, dir: PathBuf) -> PyResult<Vec<(String, Py<PyAny>)
 #[pyfunction]
 pub fn resolved_case(dir: PathBuf) -> Option<String> {
     OutputDirectory::existing(dir).read_case()
+}
+
+/// A picture of a run, of its directory.
+#[pyfunction]
+pub fn run_picture(
+    py: Python<'_>,
+    dir: PathBuf,
+    name: Option<&str>,
+    law: Option<&NativeLaw>,
+    width: Option<&str>,
+    title: bool,
+) -> PyResult<NativePicture> {
+    let out = OutputDirectory::existing(dir);
+    let case = out.load_case().map_err(failed)?;
+    let view = view(&case, width, title)?;
+    let pictures = compute(py, || -> PyResult<Vec<Picture>> {
+        let history = read_history(&out.history()).map_err(failed)?;
+        let mut pictures = replot(&out, &case, &history, &view).map_err(failed)?;
+        if let Some(law) = law {
+            pictures.push(beside_run(law.file(), &case, &history, &view).map_err(failed)?.0);
+        }
+        Ok(pictures)
+    })??;
+    chosen(pictures, name)
 }

@@ -73,6 +73,12 @@ fn square(a: Sym) -> Sym {
     );
 }
 
+// W = mu/2 (tr b_e_bar - 3) from b_e_bar - I.
+fn elastic_energy_deviatoric(e: Elasticity, be: Sym) -> real {
+    let d = deviator(be);
+    return 1.5 * e.shear * isochoric_mean(d.tensor, d.mean);
+}
+
 // u = t - 1 where t is the largest root of det(D + t I) = 1, by Newton's iteration from a guess at
 // or above it.
 fn isochoric_mean(d: Sym, guess: real) -> real {

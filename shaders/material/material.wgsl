@@ -1,4 +1,4 @@
-// The elastic half of the material and its parameters: the twin of
+// The volumetric half of the material and its parameters: the twin of
 // crates/kernels/src/material/mod.rs.
 
 // Why a point has no answer, or what it did. The numbers are those of src/compute/gpu/material.rs.
@@ -63,10 +63,4 @@ fn elastic_energy_volumetric(e: Elasticity, j_minus_1: real) -> real {
         bracket = j + 0.5 * j * j - log_(1.0 + j);
     }
     return 0.5 * e.bulk * bracket;
-}
-
-// W = mu/2 (tr b_e_bar - 3) from b_e_bar - I.
-fn elastic_energy_deviatoric(e: Elasticity, be: Sym) -> real {
-    let d = deviator(be);
-    return 1.5 * e.shear * isochoric_mean(d.tensor, d.mean);
 }

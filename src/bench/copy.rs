@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::timing::{Patience, measure, of_kernels};
-use super::{BenchError, Options, Pools};
+use super::{BenchError, Options, ThreadPools};
 use crate::compute::gpu::{GpuContext, GpuError, StorageBuffer};
 
 /// Bytes a second, read and written together where both are in the same memory.
@@ -63,7 +63,7 @@ impl CopyRates {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn measure(options: &Options, context: Option<&GpuContext>, pools: &Pools) -> Result<Self, BenchError> {
+    pub fn measure(options: &Options, context: Option<&GpuContext>, pools: &ThreadPools) -> Result<Self, BenchError> {
         let words = options.copied / 4;
         let from: Vec<u32> = (0..words as u32).collect();
         let mut to = vec![0u32; words];

@@ -6,14 +6,14 @@ use std::time::Instant;
 
 use super::count::{Counted, operations};
 use super::input::{mesh, models, squeezed};
-use super::report::{Measurement, On, Report, Row, Setup};
+use super::report::{Measurement, On, RateRow, RatesReport, Setup};
 use super::timing::{Timing, gather, measure as repeat, of_kernels};
 use super::traffic::Sizes;
-use super::{BenchError, Options, Pools};
+use super::{BenchError, Options, ThreadPools};
 use crate::compute::cpu::Cpu;
 use crate::compute::gpu::{DeviceReal, Evaluation, Gpu, GpuContext};
 use crate::compute::handle::at_contact;
-use crate::compute::{Answer, Blocks, Call, CaseModel, Compute, ComputeError, Outcome};
+use crate::compute::{Answer, Call, CaseModel, Compute, ComputeError, Evaluated, TangentBlocks};
 use crate::memory;
 use crate::mesh::Mesh;
 
@@ -34,7 +34,7 @@ struct Calls {
     displacement: Vec<Arc<[f64]>>,
     /// What the last calls left: internal forces at the contact nodes, and memory for tangents.
     force: Vec<Vec<f64>>,
-    blocks: Vec<Blocks>,
+    blocks: Vec<TangentBlocks>,
 }
 
 impl Calls {
@@ -42,7 +42,7 @@ impl Calls {
         Self {
             displacement: models.iter().map(|m| squeezed(&m.mesh, SQUEEZE[0]).into()).collect(),
             force: vec![vec![0.0; 3 * sizes.contact_points]; models.len()],
-            blocks: vec![Blocks::Double(vec![[0.0; 9]; sizes.blocks]); models.len()],
+            blocks: vec![TangentBlocks::Double(vec![[0.0; 9]; sizes.blocks]); models.len()],
         }
     }
 
@@ -90,15 +90,15 @@ impl Calls {
     }
 }
 
-fn valid(outcome: Outcome) -> Result<(), ComputeError> {
+fn valid(outcome: Evaluated) -> Result<(), ComputeError> {
     match outcome {
-        Outcome::Valid => Ok(()),
+        Evaluated::Valid => Ok(()),
         outcome => Err(ComputeError::Device(format!("the bench's displacement was refused: {outcome:?}"))),
     }
 }
 
 /// Operations of one case: of each evaluation.
-fn operations_of_a_case(models: &[CaseModel], sizes: &Sizes, pools: &Pools) -> Result<[u64; 4], BenchError> {
+fn operations_of_a_case(models: &[CaseModel], sizes: &Sizes, pools: &ThreadPools) -> Result<[u64; 4], BenchError> {
     let model = &models[..1];
     pools.one.install(|| {
         let mut cpu = Cpu::<Counted>::new(model.to_vec())?;
@@ -120,8 +120,8 @@ fn operations_of_a_case(models: &[CaseModel], sizes: &Sizes, pools: &Pools) -> R
 pub fn measure<R: DeviceReal>(
     options: &Options,
     context: Option<&Arc<GpuContext>>,
-    pools: &Pools,
-    report: &mut Report,
+    pools: &ThreadPools,
+    report: &mut RatesReport,
     say: &mut dyn FnMut(&str),
 ) -> Result<(), BenchError> {
     let mesh = mesh(options.elements)?;
@@ -137,7 +137,7 @@ pub fn measure<R: DeviceReal>(
                 On::Device => sizes.on_device(evaluation, size_of::<R>()),
                 On::OneCore | On::AllCores => sizes.on_cpu::<R>(evaluation),
             };
-            Row {
+            RateRow {
                 evaluation: name,
                 law: "power",
                 precision: R::NAME,
@@ -151,7 +151,7 @@ pub fn measure<R: DeviceReal>(
             }
         };
         let room = memory_for(&mesh, &sizes, batch, size_of::<R>());
-        let skip = |report: &mut Report, reason: &str| {
+        let skip = |report: &mut RatesReport, reason: &str| {
             let places = [On::Device, On::OneCore, On::AllCores];
             for on in places.into_iter().filter(|&on| on != On::Device || context.is_some()) {
                 report.rows.extend((0..4).map(|kind| row(kind, on).with(Err(reason.to_owned()), None)));

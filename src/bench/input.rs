@@ -31,7 +31,7 @@ pub fn laws<R: Real>() -> Result<Vec<(&'static str, Material<R>)>, MaterialError
 
 /// A material point before a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MaterialPoint<R> {
+pub struct BenchPoint<R> {
     /// f - I of the step, rows first.
     pub relative: [[R; 3]; 3],
     /// The committed state.
@@ -40,7 +40,7 @@ pub struct MaterialPoint<R> {
 
 /// Committed states after a random step of 1 %, and the next step of 1 % along the same direction:
 /// every point yields in both, unless the law never yields.
-pub fn material_points<R: Real>(material: &Material<R>, count: usize) -> Vec<MaterialPoint<R>> {
+pub fn material_points<R: Real>(material: &Material<R>, count: usize) -> Vec<BenchPoint<R>> {
     let mut random = Seeded::new(1);
     let mut points = Vec::with_capacity(count);
     let never = matches!(material.hardening, FlowStress::Elastic);
@@ -50,13 +50,13 @@ pub fn material_points<R: Real>(material: &Material<R>, count: usize) -> Vec<Mat
         let Ok(first) = return_mapping(material, &relative, &PointState::default()) else { continue };
         let yields = |state| return_mapping(material, &relative, state).is_ok_and(|r| r.yielding);
         if never || (first.yielding && yields(&first.state)) {
-            points.push(MaterialPoint { relative, state: first.state });
+            points.push(BenchPoint { relative, state: first.state });
         }
     }
     points
 }
 
-/// Eight [`MaterialPoint`]s side by side.
+/// Eight [`BenchPoint`]s side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EightPoints<R> {
     /// f - I of the step, rows first.
@@ -66,9 +66,9 @@ pub struct EightPoints<R> {
 }
 
 /// Points in groups of eight; what is left over is left out.
-pub fn side_by_side<R: Real>(points: &[MaterialPoint<R>]) -> Vec<EightPoints<R>> {
+pub fn side_by_side<R: Real>(points: &[BenchPoint<R>]) -> Vec<EightPoints<R>> {
     let (groups, _) = points.as_chunks::<8>();
-    let eight = |p: &[MaterialPoint<R>; 8]| EightPoints {
+    let eight = |p: &[BenchPoint<R>; 8]| EightPoints {
         relative: std::array::from_fn(|i| std::array::from_fn(|k| Lanes::from_fn(|q| p[q].relative[i][k]))),
         state: PointState::of_eight(&p.map(|p| p.state)),
     };

@@ -12,7 +12,7 @@ use crate::compute::gpu::KernelTimes;
 
 /// A kernel in a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Kernel {
+pub struct BenchKernel {
     /// Its name.
     pub kernel: &'static str,
     /// f64 or f32.
@@ -49,7 +49,7 @@ pub struct KernelShares {
     /// Bytes a second of a copy on the device, read and written together.
     pub copy_bytes_per_s: f64,
     /// The kernels, those that took longest first.
-    pub kernels: Vec<Kernel>,
+    pub kernels: Vec<BenchKernel>,
 }
 
 impl KernelShares {
@@ -69,13 +69,13 @@ impl KernelShares {
             }
         }
         let all: f64 = times.kernels.iter().map(|kernel| kernel.seconds).sum();
-        let mut kernels: Vec<Kernel> = times
+        let mut kernels: Vec<BenchKernel> = times
             .kernels
             .iter()
             .map(|of| {
                 let seconds = times.timed.then_some(of.seconds);
                 let per_s = seconds.zip(of.bytes).filter(|(seconds, _)| *seconds > 0.0).map(|(s, bytes)| bytes as f64 / s);
-                Kernel {
+                BenchKernel {
                     kernel: of.kernel,
                     precision: of.precision.to_string(),
                     dispatches: of.dispatches,
@@ -87,7 +87,7 @@ impl KernelShares {
                 }
             })
             .collect();
-        let rank = |kernel: &Kernel| (kernel.seconds.unwrap_or(0.0), kernel.dispatches as f64);
+        let rank = |kernel: &BenchKernel| (kernel.seconds.unwrap_or(0.0), kernel.dispatches as f64);
         kernels.sort_by(|a, b| rank(b).0.total_cmp(&rank(a).0).then(rank(b).1.total_cmp(&rank(a).1)));
         let (span_s, kernels_s) = (times.span, times.timed.then_some(all));
         Self { batch, device, wall_s, span_s, kernels_s, missing, copy_bytes_per_s: copy, kernels }

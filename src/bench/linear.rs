@@ -4,16 +4,16 @@
 use std::sync::Arc;
 
 use super::input::{mesh, models};
-use super::report::{Measurement, On, Report, Row};
+use super::report::{Measurement, On, RateRow, RatesReport};
 use super::timing::{Timing, measure as repeat, of_kernels};
 use super::{BenchError, Options};
-use crate::compute::gpu::linear::parts::Part;
-use crate::compute::gpu::linear::sizes::Account;
+use crate::compute::gpu::linear::parts::SolvePart;
+use crate::compute::gpu::linear::sizes::Cost;
 use crate::compute::gpu::{DeviceReal, Evaluation, Gpu, GpuContext};
 use crate::compute::{CaseModel, ComputeError};
 
 /// What is known of each part: its account, calls and kernels in milliseconds.
-type Found = Vec<(Account, Timing, f64)>;
+type PartTimes = Vec<(Cost, Timing, f64)>;
 
 /// Measures every part at every batch size: in single precision, as all of the solver is.
 ///
@@ -22,7 +22,7 @@ type Found = Vec<(Account, Timing, f64)>;
 pub fn measure(
     options: &Options,
     context: Option<&Arc<GpuContext>>,
-    report: &mut Report,
+    report: &mut RatesReport,
     say: &mut dyn FnMut(&str),
 ) -> Result<(), BenchError> {
     let Some(context) = context else { return Ok(()) };
@@ -37,11 +37,11 @@ pub fn measure(
             Gpu::<f32>::new(context.clone(), models.clone()).and_then(|gpu| parts(options, &gpu, &models))
         };
         let reason = found.as_ref().err().map(ToString::to_string).unwrap_or_default();
-        for (i, (_, name)) in Part::ALL.into_iter().enumerate() {
+        for (i, (_, name)) in SolvePart::ALL.into_iter().enumerate() {
             // Of a solver that does not fit, bytes and operations are not known.
             let known = found.as_ref().ok().map(|found| found[i]);
-            let account = known.map_or(Account::default(), |(account, _, _)| account);
-            let row = Row {
+            let account = known.map_or(Cost::default(), |(account, _, _)| account);
+            let row = RateRow {
                 evaluation: name,
                 law: "power",
                 precision: "f32",
@@ -60,7 +60,7 @@ pub fn measure(
     Ok(())
 }
 
-fn parts<R: DeviceReal>(options: &Options, gpu: &Gpu<R>, models: &[CaseModel]) -> Result<Found, ComputeError> {
+fn parts<R: DeviceReal>(options: &Options, gpu: &Gpu<R>, models: &[CaseModel]) -> Result<PartTimes, ComputeError> {
     // Where it does not fit, a note says what it needs.
     let why = || gpu.notes().first().cloned().unwrap_or_else(|| "the device solves no linear systems".to_owned());
     let missing = || ComputeError::Device(why());
@@ -68,9 +68,9 @@ fn parts<R: DeviceReal>(options: &Options, gpu: &Gpu<R>, models: &[CaseModel]) -
     let cases: Vec<usize> = (0..models.len()).collect();
     // The matrices are those of undeformed bodies.
     gpu.repeat(Evaluation::Tangent, &cases, 1)?;
-    let of_part = |(part, _): (Part, &str)| {
+    let of_part = |(part, _): (SolvePart, &str)| {
         let call = repeat(options.patience, |_| gpu.repeat_part(part, &cases, 1))?;
         Ok((solver.account(part), call, of_kernels(|times| gpu.repeat_part(part, &cases, times))?))
     };
-    Part::ALL.into_iter().map(of_part).collect()
+    SolvePart::ALL.into_iter().map(of_part).collect()
 }

@@ -6,11 +6,11 @@ use std::hint::black_box;
 use rayon::prelude::*;
 
 use super::count::{Counted, operations};
-use super::input::{EightPoints, MaterialPoint, laws, material_points, side_by_side};
-use super::report::{Measurement, On, Report, Row, Setup};
+use super::input::{BenchPoint, EightPoints, laws, material_points, side_by_side};
+use super::report::{Measurement, On, RateRow, RatesReport, Setup};
 use super::timing::{Timing, measure as repeat, of_kernels};
 use super::traffic::{point_on_cpu, point_on_device};
-use super::{BenchError, Options, Pools};
+use super::{BenchError, Options, ThreadPools};
 use crate::compute::gpu::layout::{RELATIVE, STATE};
 use crate::compute::gpu::material::ReturnMapping;
 use crate::compute::gpu::{DeviceReal, GpuContext, GpuError};
@@ -68,8 +68,8 @@ fn operations_of_a_point(law: usize, points: usize) -> Result<f64, BenchError> {
 pub fn measure<R: DeviceReal>(
     options: &Options,
     context: Option<&GpuContext>,
-    pools: &Pools,
-    report: &mut Report,
+    pools: &ThreadPools,
+    report: &mut RatesReport,
     say: &mut dyn FnMut(&str),
 ) -> Result<(), BenchError> {
     let mut compiled = false;
@@ -79,7 +79,7 @@ pub fn measure<R: DeviceReal>(
         let of_a_point = operations_of_a_point(law, options.points.min(512))?;
         for &batch in &options.batches {
             let items = batch * options.points;
-            let row = |on, word_bytes: fn(usize) -> usize| Row {
+            let row = |on, word_bytes: fn(usize) -> usize| RateRow {
                 evaluation: NAME,
                 law: name,
                 precision: R::NAME,
@@ -126,7 +126,7 @@ fn on_device<R: DeviceReal>(
     options: &Options,
     context: &GpuContext,
     material: &Material<R>,
-    points: &[MaterialPoint<R>],
+    points: &[BenchPoint<R>],
     batch: usize,
 ) -> Result<(f64, Timing, f64), GpuError> {
     let start = std::time::Instant::now();

@@ -30,38 +30,38 @@ use std::sync::Arc;
 
 use crate::compute::gpu::{DeviceRequest, GpuContext, GpuError};
 use copy::CopyRates;
-use report::{Header, Report};
+use report::{Header, RatesReport};
 
 pub use error::BenchError;
-pub use options::{Device, Options, Pools};
+pub use options::{BenchDevice, Options, ThreadPools};
 
 /// Measures everything; `say` is told what is being measured.
 ///
 /// # Errors
 /// [`BenchError`]; what does not fit in memory is a row that says so.
-pub fn run(options: &Options, say: &mut dyn FnMut(&str)) -> Result<Report, BenchError> {
+pub fn run(options: &Options, say: &mut dyn FnMut(&str)) -> Result<RatesReport, BenchError> {
     let opened = match options.device {
-        Device::Cpu => Ok(None),
-        Device::Auto => GpuContext::open(DeviceRequest::Auto),
-        Device::Gpu => GpuContext::open(DeviceRequest::Gpu),
+        BenchDevice::Cpu => Ok(None),
+        BenchDevice::Auto => GpuContext::open(DeviceRequest::Auto),
+        BenchDevice::Gpu => GpuContext::open(DeviceRequest::Gpu),
     };
     let (context, missing) = match (options.device, opened) {
-        (Device::Cpu, _) => (None, None),
+        (BenchDevice::Cpu, _) => (None, None),
         // Kernels as a release build has them, from any build.
         (_, Ok(Some(context))) => (Some(Arc::new(context.with_checks(false))), None),
-        (Device::Auto, Ok(None)) => {
+        (BenchDevice::Auto, Ok(None)) => {
             (None, Some("there is none, or only a software adapter, which --device gpu takes too".to_owned()))
         }
-        (Device::Auto, Err(error)) => (None, Some(error.to_string())),
-        (Device::Gpu, Ok(None)) => return Err(GpuError::NoAdapter.into()),
-        (Device::Gpu, Err(error)) => return Err(error.into()),
+        (BenchDevice::Auto, Err(error)) => (None, Some(error.to_string())),
+        (BenchDevice::Gpu, Ok(None)) => return Err(GpuError::NoAdapter.into()),
+        (BenchDevice::Gpu, Err(error)) => return Err(error.into()),
     };
-    let pools = Pools::new(options.threads)?;
+    let pools = ThreadPools::new(options.threads)?;
     let mut header = Header::new(options, context.as_deref(), missing);
     say(&header.device_line());
     say("copies");
     header.copy = CopyRates::measure(options, context.as_deref(), &pools)?;
-    let mut report = Report { header, setups: Vec::new(), rows: Vec::new() };
+    let mut report = RatesReport { header, setups: Vec::new(), rows: Vec::new() };
     material::measure::<f64>(options, context.as_deref(), &pools, &mut report, say)?;
     material::measure::<f32>(options, context.as_deref(), &pools, &mut report, say)?;
     element::measure::<f64>(options, context.as_ref(), &pools, &mut report, say)?;

@@ -5,7 +5,7 @@ use super::timing::Patience;
 
 /// The device that is benched beside the CPU.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Device {
+pub enum BenchDevice {
     /// A GPU where there is one; a software adapter is not taken.
     Auto,
     /// None.
@@ -18,7 +18,7 @@ pub enum Device {
 #[derive(Clone, Debug)]
 pub struct Options {
     /// The device beside the CPU.
-    pub device: Device,
+    pub device: BenchDevice,
     /// Threads of the rows on all cores.
     pub threads: usize,
     /// Cases a call.
@@ -35,7 +35,7 @@ pub struct Options {
 
 impl Options {
     /// The whole table: minutes on a machine with a GPU.
-    pub fn full(device: Device, threads: usize) -> Self {
+    pub fn full(device: BenchDevice, threads: usize) -> Self {
         let patience = Patience { least: 3, most: 15, seconds: 1.0, enough: 4.0 };
         let batches = vec![1, 4, 16, 64, 256];
         Self { device, threads, batches, elements: 8, points: 4096, copied: 256 << 20, patience }
@@ -43,14 +43,14 @@ impl Options {
 
     /// A look at it in a minute, for machines without a GPU and for tests: small meshes, small
     /// batches, few repetitions.
-    pub fn quick(device: Device, threads: usize) -> Self {
+    pub fn quick(device: BenchDevice, threads: usize) -> Self {
         let patience = Patience { least: 3, most: 5, seconds: 0.05, enough: 1.0 };
         Self { device, threads, batches: vec![1, 4, 8], elements: 4, points: 512, copied: 64 << 20, patience }
     }
 }
 
 /// The pools of one thread and of all.
-pub struct Pools {
+pub struct ThreadPools {
     /// One thread.
     pub one: rayon::ThreadPool,
     /// As many as asked for.
@@ -59,7 +59,7 @@ pub struct Pools {
     pub threads: usize,
 }
 
-impl Pools {
+impl ThreadPools {
     /// Starts the threads.
     ///
     /// # Errors

@@ -21,7 +21,7 @@ pub struct Header {
     /// Threads of the rows on all cores.
     pub threads: usize,
     /// The device; none where there is only the CPU.
-    pub adapter: Option<Adapter>,
+    pub adapter: Option<BenchedDevice>,
     /// Why there is no device though one was not ruled out, for people.
     pub no_device: Option<String>,
     /// Elements along the contact radius of the bench's mesh.
@@ -36,7 +36,7 @@ pub struct Header {
 
 /// A device.
 #[derive(Clone, Debug, Serialize)]
-pub struct Adapter {
+pub struct BenchedDevice {
     /// Its name.
     pub name: String,
     /// What sort of machine.
@@ -71,7 +71,7 @@ impl Header {
                 format!("{} arrays a kernel", a.limits.storage_buffers),
                 format!("workgroups of {}", a.limits.threads),
             ];
-            Adapter {
+            BenchedDevice {
                 name: a.name.clone(),
                 kind: a.kind.to_string(),
                 software: !a.kind.is_real(),
@@ -127,14 +127,14 @@ pub enum On {
 #[serde(rename_all = "snake_case")]
 pub enum Measurement {
     /// Measured.
-    Measured(Measured),
+    Measured(MeasuredRates),
     /// Not measured, for this reason: it does not fit, or the device cannot.
     Skipped(String),
 }
 
 /// The numbers of a row.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Measured {
+pub struct MeasuredRates {
     /// The call as the program makes it, with transfers.
     #[serde(flatten)]
     pub call: Timing,
@@ -152,7 +152,7 @@ pub struct Measured {
 
 /// An evaluation at a batch size in a place.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct RateRow {
     /// What is evaluated.
     pub evaluation: &'static str,
     /// Hardening law.
@@ -175,9 +175,9 @@ pub struct Row {
     pub outcome: Measurement,
 }
 
-impl Row {
+impl RateRow {
     /// The numbers, if there are any.
-    pub fn measured(&self) -> Option<&Measured> {
+    pub fn measured(&self) -> Option<&MeasuredRates> {
         match &self.outcome {
             Measurement::Measured(measured) => Some(measured),
             Measurement::Skipped(_) => None,
@@ -191,7 +191,7 @@ impl Row {
             Ok((call, kernels_ms)) => {
                 let seconds = 1e-3 * kernels_ms.unwrap_or(call.median_ms);
                 let bytes_per_s = self.bytes as f64 / seconds;
-                Measurement::Measured(Measured {
+                Measurement::Measured(MeasuredRates {
                     call,
                     kernels_ms,
                     items_per_s: self.items as f64 / (1e-3 * call.median_ms),
@@ -221,17 +221,17 @@ pub struct Setup {
 
 /// Everything that was measured.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct RatesReport {
     /// Where and how.
     #[serde(flatten)]
     pub header: Header,
     /// Set-up times of the device.
     pub setups: Vec<Setup>,
     /// The rows: every evaluation, precision and batch size on the device, one core and all cores.
-    pub rows: Vec<Row>,
+    pub rows: Vec<RateRow>,
 }
 
-impl Report {
+impl RatesReport {
     /// Indented JSON with an end of line; what is not a number is null.
     pub fn to_json(&self) -> String {
         // Plain numbers, words and lists: nothing that could fail.
@@ -281,7 +281,7 @@ mod tests {
 
     #[test]
     fn rates_follow_from_the_times() {
-        let row = Row {
+        let row = RateRow {
             evaluation: "tangent",
             law: "power",
             precision: "f64",

@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use super::report::{Header, Measurement, On, Report, Row};
+use super::report::{Header, Measurement, On, RateRow, RatesReport};
 
 /// Columns of a place: its time, rate, operations and share of a copy.
 const HEAD: [&str; 17] = [
@@ -28,7 +28,7 @@ const HEAD: [&str; 17] = [
 const MORE: [&str; 3] = ["copy", "x 1 core", "x all, kernels"];
 
 /// The header, the table and what did not fit.
-pub fn table(report: &Report) -> String {
+pub fn table(report: &RatesReport) -> String {
     let mut text = header(&report.header);
     for setup in &report.setups {
         let _ = writeln!(
@@ -44,11 +44,12 @@ pub fn table(report: &Report) -> String {
     let mut skipped: Vec<String> = Vec::new();
     let mut rows = report.rows.iter().peekable();
     while let Some(first) = rows.peek().copied() {
-        let same =
-            |r: &&Row| (r.evaluation, r.law, r.precision, r.batch) == (first.evaluation, first.law, first.precision, first.batch);
+        let same = |r: &&RateRow| {
+            (r.evaluation, r.law, r.precision, r.batch) == (first.evaluation, first.law, first.precision, first.batch)
+        };
         // The places of an evaluation stand together for the return mapping, one place after the
         // other for the rest.
-        let group: Vec<&Row> = report.rows.iter().filter(same).collect();
+        let group: Vec<&RateRow> = report.rows.iter().filter(same).collect();
         if group.first().is_some_and(|r| std::ptr::eq(*r, first)) {
             lines.push(line(&group));
             skipped.extend(group.iter().filter_map(|row| match &row.outcome {
@@ -123,12 +124,12 @@ fn header(h: &Header) -> String {
 }
 
 /// An evaluation in all its places.
-fn line(group: &[&Row]) -> Vec<String> {
+fn line(group: &[&RateRow]) -> Vec<String> {
     let first = group[0];
     let find = |on: On| group.iter().find(|row| row.on == on).copied();
-    let measured = |on: On| find(on).and_then(Row::measured);
+    let measured = |on: On| find(on).and_then(RateRow::measured);
     let nothing = |on: On| if find(on).is_some() { "does not fit" } else { "-" }.to_owned();
-    let show = |on: On, f: &dyn Fn(&super::report::Measured) -> String| measured(on).map_or_else(|| "-".to_owned(), f);
+    let show = |on: On, f: &dyn Fn(&super::report::MeasuredRates) -> String| measured(on).map_or_else(|| "-".to_owned(), f);
     let time = |on: On| {
         measured(on).map_or_else(
             || nothing(on),

@@ -3,7 +3,7 @@ use super::report::On;
 use super::timing::Patience;
 use super::traffic::Sizes;
 use super::*;
-use crate::compute::Outcome;
+use crate::compute::Evaluated;
 use crate::compute::cpu::Cpu;
 use crate::compute::handle::at;
 use crate::material::{FlowStress, return_mapping};
@@ -12,7 +12,7 @@ use crate::real::Real;
 /// So small that debug builds do it in a second.
 fn options() -> Options {
     let patience = Patience { least: 1, most: 1, seconds: 0.0, enough: 0.0 };
-    Options { batches: vec![1, 2], points: 64, copied: 1 << 20, patience, ..Options::quick(Device::Cpu, 2) }
+    Options { batches: vec![1, 2], points: 64, copied: 1 << 20, patience, ..Options::quick(BenchDevice::Cpu, 2) }
 }
 
 #[test]
@@ -21,7 +21,7 @@ fn every_point_yields_and_input_is_the_same_in_every_run() {
         for (name, material) in laws::<R>().unwrap() {
             let points = material_points(&material, 200);
             assert_eq!(points, material_points(&material, 200), "{name}");
-            let yields = |p: &input::MaterialPoint<R>| return_mapping(&material, &p.relative, &p.state).unwrap().yielding;
+            let yields = |p: &input::BenchPoint<R>| return_mapping(&material, &p.relative, &p.state).unwrap().yielding;
             let elastic = matches!(material.hardening, FlowStress::Elastic);
             assert!(points.iter().all(|p| yields(p) != elastic), "{name}");
             assert_eq!(side_by_side(&points).len(), 25);
@@ -42,7 +42,7 @@ fn every_quadrature_point_of_a_batch_yields() {
         let mut before = at(&mut cpu, case).state().unwrap();
         for strain in [0.02, 0.0201] {
             let (_, outcome) = at(&mut cpu, case).commit(&squeezed(&model.mesh, strain)).unwrap();
-            assert_eq!(outcome, Outcome::Valid);
+            assert_eq!(outcome, Evaluated::Valid);
             let after = at(&mut cpu, case).state().unwrap();
             let alphas = |s: &crate::compute::CaseState| s.points.iter().flatten().map(|p| p.alpha).collect::<Vec<_>>();
             assert!(alphas(&before).iter().zip(alphas(&after)).all(|(a, b)| b > *a), "case {case} at {strain}");

@@ -5,7 +5,7 @@
 use crate::compute::gpu::Evaluation;
 use crate::compute::gpu::layout::{ANSWER, COORDINATES, ELEMENT_BLOCKS, HISTORY, RELATIVE, ROWS, STATE, TANGENT, TRIAL};
 use crate::contact::coulomb::Rows;
-use crate::element::hex8::{Geometry, NODES, Nodal, Points, State, Tangent};
+use crate::element::hex8::{ElementGeometry, ElementState, NODES, Nodal, Points, Tangent};
 use crate::mesh::Mesh;
 use crate::mesh::pattern::Pattern;
 
@@ -73,7 +73,7 @@ impl Sizes {
         let of_elements = |bytes: usize| bytes * self.elements;
         // committed and trial displacements, geometry, states
         let element =
-            of_elements(INDEX * NODES + size_of::<Geometry<R>>() + size_of::<Points<R>>()) + 2 * 3 * double * self.nodes;
+            of_elements(INDEX * NODES + size_of::<ElementGeometry<R>>() + size_of::<Points<R>>()) + 2 * 3 * double * self.nodes;
         match evaluation {
             Evaluation::InternalForce => {
                 let gather = INDEX * (self.nodes + NODES * self.elements) + 3 * double * self.nodes;
@@ -86,7 +86,7 @@ impl Sizes {
             Evaluation::Contact => self.contact_points * (size_of::<Rows<f64>>() + INDEX + 10 * double + size_of::<R>()),
             Evaluation::Update => {
                 // the state is read, made anew, read again and kept with its start
-                element + of_elements(4 * size_of::<State<R>>() + size_of::<Points<R>>()) + 2 * 3 * double * self.nodes
+                element + of_elements(4 * size_of::<ElementState<R>>() + size_of::<Points<R>>()) + 2 * 3 * double * self.nodes
             }
         }
     }

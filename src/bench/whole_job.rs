@@ -160,7 +160,7 @@ fn on(
     begun: Instant,
 ) -> Result<WholeJob, BenchError> {
     let study = study(batch, options.elements)?;
-    let dir = Scratch::new(&format!("whole-job-{batch}"));
+    let dir = ScratchFolder::new(&format!("whole-job-{batch}"));
     let how = Options {
         device,
         precision: PrecisionChoice::Auto,
@@ -214,9 +214,9 @@ fn on(
 }
 
 /// A folder for results that nobody will look at, removed at the end.
-pub(crate) struct Scratch(PathBuf);
+pub(crate) struct ScratchFolder(PathBuf);
 
-impl Scratch {
+impl ScratchFolder {
     /// Of this process, with a name among its own.
     pub fn new(name: &str) -> Self {
         Self(std::env::temp_dir().join(format!("asperity-{name}-{}", std::process::id())))
@@ -228,7 +228,7 @@ impl Scratch {
     }
 }
 
-impl Drop for Scratch {
+impl Drop for ScratchFolder {
     fn drop(&mut self) {
         // What cannot be removed is left to whoever tidies the temporary files.
         let _ = std::fs::remove_dir_all(&self.0);

@@ -1,10 +1,10 @@
 //! Segments of the path in which the plate moves in any of its six degrees of freedom.
 
+use super::bodies::{Friction, Sphere};
 use super::error::CaseError;
-use super::path::{Hold, Lengths, Motion, Segment, ShearTarget, State};
-use super::path::{displacement, read_full_slip, read_hold, read_indentation, unit};
 use super::reader::{Field, Reader};
-use super::{Friction, Sphere};
+use super::segment::{Hold, Motion, Segment, ShearTarget, unit};
+use super::targets::{Lengths, PathState, displacement, read_full_slip, read_hold, read_indentation};
 
 /// Largest angle of a twist, in rad, and of a roll, by which the contact travels along the sphere.
 const MAX_TWIST: f64 = 100.0;
@@ -17,7 +17,12 @@ pub(super) fn is_asked_for(table: &Reader<'_>) -> bool {
 }
 
 /// Reads such a segment; one along x alone as what it is.
-pub(super) fn read(table: &Reader<'_>, state: &mut State, lengths: &Lengths, friction: Friction) -> Result<Segment, CaseError> {
+pub(super) fn read(
+    table: &Reader<'_>,
+    state: &mut PathState,
+    lengths: &Lengths,
+    friction: Friction,
+) -> Result<Segment, CaseError> {
     let hold = read_hold(table)?;
     let indentation = table.get("indentation");
     if let (Some(hold), Some(_)) = (table.get("hold"), &indentation) {
@@ -66,7 +71,7 @@ pub(super) fn read(table: &Reader<'_>, state: &mut State, lengths: &Lengths, fri
 fn read_slip(
     table: &Reader<'_>,
     field: &Field<'_>,
-    state: &mut State,
+    state: &mut PathState,
     hold: Hold,
     friction: Friction,
 ) -> Result<Segment, CaseError> {
@@ -92,7 +97,7 @@ fn read_slip(
 }
 
 /// Both components, of a pair or of a length in a direction; of a length alone y stays as it is.
-fn read_shear(table: &Reader<'_>, field: &Field<'_>, state: &State, lengths: &Lengths) -> Result<[f64; 2], CaseError> {
+fn read_shear(table: &Reader<'_>, field: &Field<'_>, state: &PathState, lengths: &Lengths) -> Result<[f64; 2], CaseError> {
     const PAIR: &str = "a length, or two of them: [x, y]";
     if field.is_array() {
         if let Some(direction) = table.get("shear_direction") {

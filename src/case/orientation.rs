@@ -5,8 +5,7 @@
 //! that is turned about the normal has a mesh that is turned with it, and the same forces; what the
 //! mesh adds of its own is met by a path only where it leaves its first direction.
 
-use super::path::unit;
-use super::{Case, Motion, Segment, ShearTarget};
+use super::{Case, Hold, Motion, Segment, ShearTarget, unit};
 use crate::contact::pair::Image;
 
 /// The mesh's axes in the user's: both have the same z.
@@ -65,7 +64,7 @@ impl Orientation {
         match segment {
             Segment::Shear { shear: ShearTarget::Displacement(shear), hold } => Segment::Motion { to: to(None, shear), hold },
             Segment::Oblique { indentation, shear } => {
-                Segment::Motion { to: to(Some(indentation), shear), hold: super::Hold::default() }
+                Segment::Motion { to: to(Some(indentation), shear), hold: Hold::default() }
             }
             Segment::Motion { to, hold } => Segment::Motion {
                 to: Motion {
@@ -164,7 +163,7 @@ mod tests {
         assert!(shears.len() == 2 && close(&shears[0], &[0.005, 0.0]) && close(&shears[1], &[-0.005, 0.0]), "{shears:?}");
         let slip = case("[[path]]\nshear = \"full-slip\"\nshear_direction = 37\n", "");
         let turned = slip.orientation().segment_to_mesh(slip.path[1]);
-        assert_eq!(turned, Segment::Slip { direction: 0.0, hold: crate::case::Hold::Indentation });
+        assert_eq!(turned, Segment::Slip { direction: 0.0, hold: Hold::Indentation });
     }
 
     #[test]

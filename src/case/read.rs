@@ -6,21 +6,19 @@ use super::document::Document;
 use super::error::{CaseError, Place};
 use super::material::{MAGNITUDES, read_material};
 use super::reader::Reader;
+use super::settings::CONTACT_RADII;
 use super::{
     Case, Contact, Equator, Fields, Friction, Linear, Material, Mesh, Opponent, Output, PictureFormat, Solver, Sphere,
     UnitLabels, estimate, hints, opponent, path, pictures,
 };
 use crate::bounded;
-use crate::mesh::{FINE_ZONES, FINEST_SURFACE, FIRST_LAYERS, LARGEST_CONTACT};
+use crate::mesh::{FINE_ZONES, FINEST_SURFACE, FIRST_LAYERS};
 
 /// Times as many elements as inside that there may be along the contact radius at the surface.
 const SKINS: [usize; 4] = [1, 2, 4, 8];
 
 /// The tables of a case.
 const CASE_TABLES: [&str; 9] = ["sphere", "material", "contact", "opponent", "mesh", "solver", "output", "units", "path"];
-
-/// Smallest and largest a/R that the sphere is meshed for.
-pub(crate) const CONTACT_RADII: (f64, f64) = (0.0005, LARGEST_CONTACT);
 
 impl Case {
     /// Reads a case file, applies the `--set` arguments (`key=value`, in order) and checks the

@@ -1,6 +1,6 @@
 //! Where a case is computed: turns `--device` and `--precision` into a backend.
 
-use super::options::{Device, DeviceArgs, Precision};
+use super::options::{Device, DeviceArgs, PrecisionOption};
 use crate::compute::select::{DeviceChoice, PrecisionChoice, Selected, select};
 use crate::compute::{CaseModel, ComputeError};
 
@@ -23,10 +23,10 @@ pub fn device_or_variable(device: Option<Device>) -> DeviceChoice {
 /// `--precision` as `compute` has it.
 pub fn precision_choice(args: &DeviceArgs) -> PrecisionChoice {
     match args.precision {
-        Precision::Auto => PrecisionChoice::Auto,
-        Precision::F32 => PrecisionChoice::F32,
-        Precision::F64 => PrecisionChoice::F64,
-        Precision::Mixed => PrecisionChoice::Mixed,
+        PrecisionOption::Auto => PrecisionChoice::Auto,
+        PrecisionOption::F32 => PrecisionChoice::F32,
+        PrecisionOption::F64 => PrecisionChoice::F64,
+        PrecisionOption::Mixed => PrecisionChoice::Mixed,
     }
 }
 

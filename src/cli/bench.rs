@@ -52,9 +52,9 @@ pub struct BenchArgs {
 pub fn bench(args: &BenchArgs) -> Result<Exit, CliError> {
     args.verbosity.start_log();
     let device = match device_or_variable(args.device) {
-        DeviceChoice::Auto => bench::Device::Auto,
-        DeviceChoice::Cpu => bench::Device::Cpu,
-        DeviceChoice::Gpu => bench::Device::Gpu,
+        DeviceChoice::Auto => bench::BenchDevice::Auto,
+        DeviceChoice::Cpu => bench::BenchDevice::Cpu,
+        DeviceChoice::Gpu => bench::BenchDevice::Gpu,
     };
     let threads = args.threads.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
     let mut options = if args.quick { Options::quick(device, threads) } else { Options::full(device, threads) };

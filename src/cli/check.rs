@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::input::Input;
+use super::input::InputFile;
 use super::{CliError, Exit, print, print_json};
 use crate::case::{Case, estimated_elements, estimated_memory};
 use crate::simulation::problem::{press_steps, shear_steps};
@@ -32,7 +32,7 @@ pub struct CheckArgs {
 /// Loads and checks the case and prints it as TOML under its size; so the first case of a study,
 /// after a line on the size of its grid.
 pub fn check(args: &CheckArgs) -> Result<Exit, CliError> {
-    let input = Input::read(&args.case)?;
+    let input = InputFile::read(&args.case)?;
     if input.is_study() {
         if let Some(argument) = args.set.first() {
             return Err(CliError::SetInStudy { argument: argument.clone(), file: args.case.clone() });

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::{CliError, Exit};
+use super::{CliError, Exit, called};
 use crate::quoting;
 use crate::study::slurm::{self, Slurm};
 use crate::study::{self, Merged, Study, StudyDirectory};
@@ -13,7 +13,7 @@ use crate::study::{self, Merged, Study, StudyDirectory};
 /// that is wanted.
 pub fn slurm(study: &Study, arguments: &[String], out: &Path, options: &[String], submit: bool) -> Result<Exit, CliError> {
     let slurm = Slurm::parse(arguments)?;
-    let program = super::program().map_err(|source| CliError::Out { dir: out.to_owned(), what: "find this program", source })?;
+    let program = called::program().map_err(|source| CliError::Out { dir: out.to_owned(), what: "find this program", source })?;
     slurm::check(out, &program)?;
     study::prepare(study, out)?;
     let scripts = slurm::write(&StudyDirectory::new(out), &slurm, &program, options)?;

@@ -37,14 +37,14 @@ pub struct CompareArgs {
 }
 
 /// A run as it stands in its directory.
-struct Run {
+struct ComparedRun {
     name: String,
     case: Case,
     summary: Summary,
     history: Vec<StepRecord>,
 }
 
-impl Run {
+impl ComparedRun {
     fn read(dir: &Path) -> Result<Self, CliError> {
         let out = OutputDirectory::existing(dir);
         let lacking = |what: &str| CliError::NothingToCompare { dir: dir.to_owned(), what: what.to_owned() };
@@ -98,7 +98,7 @@ const COSTS: [Cost; 4] = [
 
 /// Prints the table and draws the picture.
 pub fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
-    let runs = args.dirs.iter().map(|dir| Run::read(dir)).collect::<Result<Vec<_>, _>>()?;
+    let runs = args.dirs.iter().map(|dir| ComparedRun::read(dir)).collect::<Result<Vec<_>, _>>()?;
     let unlike = runs.iter().any(|run| run.scales() != runs[0].scales());
     let overlaid: Vec<OverlaidRun<'_>> = runs
         .iter()
@@ -132,13 +132,13 @@ fn picture_file(text: &str) -> Result<PathBuf, String> {
 }
 
 /// The values of a quantity, and how far each is from the first, as a share.
-fn values(runs: &[Run], (_, plain, normalized): &Quantity, unlike: bool) -> Vec<(Option<f64>, Option<f64>)> {
-    let of = |run: &Run| if unlike { normalized(&run.summary) } else { plain(&run.summary) };
+fn values(runs: &[ComparedRun], (_, plain, normalized): &Quantity, unlike: bool) -> Vec<(Option<f64>, Option<f64>)> {
+    let of = |run: &ComparedRun| if unlike { normalized(&run.summary) } else { plain(&run.summary) };
     let first = of(&runs[0]).filter(|first| *first != 0.0);
     runs.iter().map(|run| (of(run), of(run).zip(first).map(|(value, first)| value / first - 1.0))).collect()
 }
 
-fn as_json(runs: &[Run], unlike: bool) -> Value {
+fn as_json(runs: &[ComparedRun], unlike: bool) -> Value {
     let mut quantities = Map::new();
     for quantity in &QUANTITIES {
         let values = values(runs, quantity, unlike);
@@ -155,7 +155,7 @@ fn as_json(runs: &[Run], unlike: bool) -> Value {
 }
 
 /// A column for each run, with a column of differences beside every one but the first.
-fn table(runs: &[Run], unlike: bool) -> String {
+fn table(runs: &[ComparedRun], unlike: bool) -> String {
     let mut rows: Vec<Vec<String>> = Vec::new();
     let mut head = vec![if unlike { "without units" } else { "" }.to_owned()];
     for (i, run) in runs.iter().enumerate() {

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::CliError;
-use super::input::Input;
+use super::input::InputFile;
 use crate::case::{Case, CaseError};
 
 /// What a case of one press and one shear needs. `--E` takes the place of the file.
@@ -59,7 +59,7 @@ impl ContactArgs {
              [material.hardening]\nlaw = \"ideal\"\nyield_stress = {stress:?}\n[contact]\nfriction = {mu:?}\n\
              {opponent}[[path]]\nindentation = {h:?}\n[[path]]\nshear = \"full-slip\"\n"
         );
-        let input = Input { text, name: "the options".to_owned() };
+        let input = InputFile { text, name: "the options".to_owned() };
         match input.case(settings) {
             Ok(case) => Ok(Some(case)),
             Err(CliError::Mistakes { errors, .. }) => {

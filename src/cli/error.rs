@@ -3,7 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
-use super::environment::gpu_asked_by;
+use super::called::gpu_asked_by;
 use super::snippet;
 use crate::bench::BenchError;
 use crate::case::CaseError;

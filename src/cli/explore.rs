@@ -9,7 +9,7 @@ use std::time::Duration;
 use clap::Args;
 
 use super::backend::{device_choice, precision_choice};
-use super::input::Input;
+use super::input::InputFile;
 use super::options::DeviceArgs;
 use super::signals::stop_flag;
 use super::{CliError, Exit, print};
@@ -56,7 +56,7 @@ pub fn explore(args: &ExploreArgs) -> Result<Exit, CliError> {
     let earlier = args.case.as_deref().filter(|case| case.is_dir()).map(read_run).transpose()?;
     let base = match (&args.case, &earlier) {
         (_, Some(run)) => run.case.clone(),
-        (Some(file), None) => Input::read(file)?.case(&[])?,
+        (Some(file), None) => InputFile::read(file)?.case(&[])?,
         (None, None) => Case::parse(FIRST_CASE, "first.toml", &[])?,
     };
     let study = args.study.as_deref().map(StudyCases::read).transpose()?.unwrap_or_default();

@@ -11,14 +11,14 @@ use crate::study::{Study, StudyError};
 
 /// A case or study file, read and not yet parsed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Input {
+pub struct InputFile {
     /// Its text.
     pub text: String,
     /// The name that messages give.
     pub name: String,
 }
 
-impl Input {
+impl InputFile {
     /// Reads the file.
     ///
     /// # Errors

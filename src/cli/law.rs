@@ -1,7 +1,6 @@
 //! `asperity law`: fits a contact law to a study, and applies it to a case.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
@@ -9,11 +8,12 @@ use clap::{Args, Subcommand};
 use serde_json::{Value, json};
 
 use super::contact::ContactArgs;
-use super::input::Input;
-use super::law_check::{CheckArgs, check_law};
+use super::input::InputFile;
+use super::law_check::{LawCheckArgs, check_law};
 use super::law_compose::{ComposeArgs, compose_tables};
 use super::law_export::{ExportArgs, export_law};
 use super::law_tabulate::{TabulateArgs, tabulate};
+use super::print::warn_out_of_range;
 use super::{CliError, Exit, print, print_json};
 use crate::case::{Case, Segment};
 use crate::contact_law::path::PathPoint;
@@ -51,7 +51,7 @@ pub enum LawCommand {
     /// Predict F_N and F_T along the path of a case without simulating it; prints CSV.
     Predict(PredictArgs),
     /// Simulate a set of test paths and print the errors of the law along each.
-    Check(CheckArgs),
+    Check(LawCheckArgs),
     /// Export a law for a DEM code: all files that an engine needs, or the update of one contact as
     /// C headers or as a Python module.
     Export(ExportArgs),
@@ -234,7 +234,7 @@ fn predict_case(args: &PredictArgs) -> Result<Exit, CliError> {
         Some(case) => (case, "the contact".to_owned()),
         None => {
             // Clap lets nothing pass without options or a file.
-            let input = Input::read(args.case.as_deref().unwrap_or(Path::new("")))?;
+            let input = InputFile::read(args.case.as_deref().unwrap_or(Path::new("")))?;
             (input.case(&args.set)?, input.name)
         }
     };
@@ -305,18 +305,4 @@ fn pressed(law: &LawFile, case: &Case, path: &Path) -> Result<(Vec<PathPoint>, V
         ..PathPoint::default()
     };
     Ok((curve.iter().map(point).collect(), out_of_range))
-}
-
-/// Says on stderr what of a case lies outside of a law's range.
-pub(super) fn warn_out_of_range(case: &Path, out_of_range: &[OutOfRange]) {
-    if !out_of_range.is_empty() {
-        let list: Vec<String> = out_of_range.iter().map(ToString::to_string).collect();
-        // A closed stderr does not change the prediction.
-        let _ = writeln!(
-            std::io::stderr(),
-            "warning: {} lies outside of what the law was fitted to: {}. Compare with `asperity run`",
-            case.display(),
-            list.join(", ")
-        );
-    }
 }

@@ -19,7 +19,7 @@ use crate::output::write_own;
 
 /// The arguments of `law check`.
 #[derive(Clone, Debug, Args)]
-pub struct CheckArgs {
+pub struct LawCheckArgs {
     /// A law file that `law fit`, `law tabulate` or `law compose` wrote; or `built-in`.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
@@ -72,7 +72,7 @@ const GOALS: [f64; 2] = [0.9, 0.75];
 const MOST_LEFT_OUT: f64 = 0.1;
 
 /// Simulates, compares and prints.
-pub(super) fn check_law(args: &CheckArgs) -> Result<Exit, CliError> {
+pub(super) fn check_law(args: &LawCheckArgs) -> Result<Exit, CliError> {
     args.verbosity.start_log();
     args.device.start_threads()?;
     let case = args.case.as_ref().map(|path| Case::load(path, &args.set)).transpose()?;

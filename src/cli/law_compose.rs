@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::law::warn_out_of_range;
+use super::print::warn_out_of_range;
 use super::{CliError, Exit, print};
 use crate::case::Case;
 use crate::law::interpolated::Interpolated;
@@ -42,12 +42,12 @@ pub struct ComposeArgs {
 }
 
 /// What a table is composed from.
-enum Given {
+enum GivenTable {
     Tables(Box<[Tabulated; 2]>),
     Interpolated(Box<Interpolated>),
 }
 
-impl Given {
+impl GivenTable {
     fn read(args: &ComposeArgs) -> Result<Self, CliError> {
         match (LawFile::read_or_built_in(&args.sphere)?, &args.opponent) {
             (LawFile::Interpolated(law), None) => Ok(Self::Interpolated(law)),
@@ -77,7 +77,7 @@ impl Given {
 /// Makes the table and prints it.
 pub(super) fn compose_tables(args: &ComposeArgs) -> Result<Exit, CliError> {
     let case = Case::load(&args.case, &args.set)?;
-    let law = Given::read(args)?;
+    let law = GivenTable::read(args)?;
     let file = args.out.join("law.json");
     if file.exists() && !args.force {
         return Err(CliError::FileThere { file });
@@ -85,7 +85,7 @@ pub(super) fn compose_tables(args: &ComposeArgs) -> Result<Exit, CliError> {
     let opponent = args.opponent.as_deref().unwrap_or(&args.sphere);
     refuse_input(&file, &[&args.case, &args.sphere, opponent])?;
     let table = law.table(&case).map_err(|source| CliError::LawCase { file: args.case.clone(), source: Box::new(source) })?;
-    if let Given::Interpolated(law) = &law {
+    if let GivenTable::Interpolated(law) = &law {
         let deepest = table.range.to * case.sphere.radius;
         warn_out_of_range(&args.case, &law.out_of_range(&case, deepest)?);
     }

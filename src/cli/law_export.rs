@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 
-use super::input::Input;
-use super::law::warn_out_of_range;
+use super::input::InputFile;
+use super::print::warn_out_of_range;
 use super::{CliError, Exit, print};
 use crate::law::export::{Engine, ExportedFile, Language, Start, beyond_the_law, law_files, law_source, start_files};
 use crate::law::{LawError, LawFile};
@@ -91,7 +91,7 @@ pub(super) fn export_law(args: &ExportArgs) -> Result<Exit, CliError> {
 fn export_start(args: &ExportArgs, law: &LawFile, engine: Engine) -> Result<Exit, CliError> {
     let mut cases = Vec::new();
     for file in args.case.iter().chain(&args.with) {
-        let input = Input::read(file)?;
+        let input = InputFile::read(file)?;
         let name = file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
         let settings: &[String] = if cases.is_empty() { &args.set } else { &[] };
         cases.push((name, input.case(settings)?));
@@ -137,7 +137,7 @@ fn write_files(dir: &Path, files: Vec<ExportedFile>) -> Result<(), CliError> {
 
 /// Writes or prints a law by itself.
 fn export_one(args: &ExportArgs, law: &LawFile, language: Language) -> Result<Exit, CliError> {
-    let input = args.case.as_deref().map(Input::read).transpose()?;
+    let input = args.case.as_deref().map(InputFile::read).transpose()?;
     let case = input.as_ref().map(|input| input.case(&args.set)).transpose()?;
     // What messages call the case: that of standard input has no path.
     let in_case = |source: LawError| match &input {

@@ -2,6 +2,7 @@
 
 pub mod backend;
 pub mod bench;
+mod called;
 pub mod check;
 pub mod cluster;
 pub mod compare;
@@ -9,6 +10,7 @@ pub mod contact;
 pub mod devices;
 pub mod environment;
 pub mod error;
+mod exit;
 pub mod explain;
 #[cfg(feature = "explore")]
 pub mod explore;
@@ -22,6 +24,7 @@ mod law_tabulate;
 pub mod options;
 pub mod plot;
 pub mod point;
+mod print;
 pub mod prove;
 pub mod run;
 pub mod schema;
@@ -32,15 +35,14 @@ pub mod study;
 pub mod verify;
 
 pub use error::CliError;
+pub use exit::Exit;
+pub use print::{print, print_json};
 
 use std::ffi::OsString;
 use std::io::Write;
-use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::OnceLock;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
-use serde::Serialize;
 
 /// Simulates elastic-plastic spheres pressed onto a rigid plane and sheared along it.
 #[derive(Debug, Parser)]
@@ -123,8 +125,8 @@ impl Command {
             Command::Explain(args) => explain::explain(args),
             Command::Compare(args) => compare::compare(args),
             Command::Schema(args) => schema::schema(args),
-            Command::Completions(args) => shell::completions(args),
-            Command::Man(args) => shell::man(args),
+            Command::Completions(args) => shell::completions(args, command()),
+            Command::Man(args) => shell::man(args, command()),
         }
     }
 }
@@ -132,79 +134,31 @@ impl Command {
 impl Cli {
     /// The arguments that the program was called with.
     fn from_command_line() -> Result<Self, clap::Error> {
-        Self::from_arg_matches(&command_line().try_get_matches_from(arguments())?)
-    }
-}
-
-/// How a subcommand that had good input ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Exit {
-    /// All was done: exit code 0.
-    Done,
-    /// A step did not converge or the contact outgrew the mesh, what was computed is kept: exit
-    /// code 3.
-    NotConverged,
-    /// A check of a verification failed: exit code 3.
-    ChecksFailed,
-    /// A law is further from simulations than its goal allows: exit code 1.
-    GoalMissed,
-    /// Cases of a study failed, all rows are kept: exit code 3.
-    CasesFailed,
-    /// Interrupted, what was computed is kept: exit code 75 (EX_TEMPFAIL of sysexits.h).
-    Interrupted,
-}
-
-impl Exit {
-    fn exit_code(self) -> u8 {
-        match self {
-            Exit::Done => 0,
-            Exit::GoalMissed => 1,
-            Exit::NotConverged | Exit::ChecksFailed | Exit::CasesFailed => error::NOT_CONVERGED,
-            Exit::Interrupted => 75,
-        }
-    }
-}
-
-/// What the program was called with, where it runs within another one.
-static CALLED_WITH: OnceLock<Vec<OsString>> = OnceLock::new();
-
-/// What the program was called with, its name first.
-fn arguments() -> Vec<OsString> {
-    CALLED_WITH.get().cloned().unwrap_or_else(|| std::env::args_os().collect())
-}
-
-/// The program's file, as a script can call it.
-///
-/// # Errors
-/// What the system says where it does not tell.
-fn program() -> std::io::Result<PathBuf> {
-    match CALLED_WITH.get().and_then(|arguments| arguments.first()) {
-        Some(name) => std::path::absolute(name),
-        None => std::env::current_exe(),
+        Self::from_arg_matches(&command_line().try_get_matches_from(called::arguments())?)
     }
 }
 
 /// The program: reads the arguments, runs the subcommand, reports an error on stderr and ends with
 /// its exit code.
 pub fn main() -> ExitCode {
-    called().into()
+    exit_code().into()
 }
 
 /// The program within another one, called with these arguments, the first of which is the file that
 /// scripts call. Gives the exit code; to be called once.
 pub fn main_within(arguments: Vec<OsString>) -> u8 {
-    let _ = CALLED_WITH.set(arguments);
-    called()
+    called::set_arguments(arguments);
+    exit_code()
 }
 
-fn called() -> u8 {
+fn exit_code() -> u8 {
     signals::begin();
     let checked = crate::processor::check().map_err(CliError::from).and_then(|()| environment::check());
     let outcome = checked.and_then(|()| match Cli::from_command_line() {
         Ok(cli) => cli.command.run().map(Exit::exit_code),
         Err(usage) => {
             // Help and version come this way too, with exit code 0.
-            let _ = match environment::shortened(&usage.to_string()) {
+            let _ = match called::shortened(&usage.to_string()) {
                 None => usage.print(),
                 Some(text) => write!(std::io::stderr(), "{text}"),
             };
@@ -233,21 +187,6 @@ fn report(error: &CliError) {
 /// The definition of the command line, for completions, man pages and the command reference.
 pub fn command() -> clap::Command {
     Cli::command()
-}
-
-/// Writes indented JSON to stdout; what is not a number is null.
-pub fn print_json(value: &impl Serialize) -> Result<(), CliError> {
-    // Plain numbers, words and lists: nothing that could fail.
-    print(&(serde_json::to_string_pretty(value).unwrap_or_default() + "\n"))
-}
-
-/// Writes to stdout; a reader that has gone away (`asperity check ... | head`) is not an error.
-pub fn print(text: &str) -> Result<(), CliError> {
-    let mut stdout = std::io::stdout().lock();
-    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
-        Err(source) if source.kind() != std::io::ErrorKind::BrokenPipe => Err(CliError::Stdout { source }),
-        _ => Ok(()),
-    }
 }
 
 #[cfg(test)]

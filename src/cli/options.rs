@@ -24,7 +24,7 @@ pub enum Device {
 
 /// The floating-point precision of the kernels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Precision {
+pub enum PrecisionOption {
     /// f64 where the device has it.
     #[default]
     Auto,
@@ -60,7 +60,7 @@ impl From<Format> for PictureFormat {
 
 /// The units of axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Units {
+pub enum UnitsOption {
     /// Those of the case if its table `units` names them, else none.
     #[default]
     Auto,
@@ -70,12 +70,12 @@ pub enum Units {
     Case,
 }
 
-impl From<Units> for AxisUnits {
-    fn from(units: Units) -> Self {
+impl From<UnitsOption> for AxisUnits {
+    fn from(units: UnitsOption) -> Self {
         match units {
-            Units::Auto => Self::Auto,
-            Units::None => Self::Normalised,
-            Units::Case => Self::Case,
+            UnitsOption::Auto => Self::Auto,
+            UnitsOption::None => Self::Normalised,
+            UnitsOption::Case => Self::Case,
         }
     }
 }
@@ -88,7 +88,7 @@ pub struct DeviceArgs {
     pub device: Option<Device>,
     /// Floating-point precision of the kernels.
     #[arg(long, value_enum, default_value_t, value_name = "PRECISION")]
-    pub precision: Precision,
+    pub precision: PrecisionOption,
     /// Number of threads; by default all of the machine's.
     #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<NonZeroUsize>,

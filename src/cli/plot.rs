@@ -7,7 +7,7 @@ use std::str::FromStr;
 
 use clap::Args;
 
-use super::options::{Format, Units};
+use super::options::{Format, UnitsOption};
 use super::{CliError, Exit, print};
 use crate::case::{PictureFormat, PictureWidth};
 use crate::law::plots::beside_run;
@@ -42,7 +42,7 @@ pub struct PlotArgs {
     pub no_title: bool,
     /// Units on the axes of a run's pictures.
     #[arg(long, value_enum, default_value_t, value_name = "UNITS")]
-    pub units: Units,
+    pub units: UnitsOption,
 }
 
 /// Finds out what the directory is and draws it.
@@ -99,7 +99,7 @@ fn plot_run(run: &OutputDirectory, args: &PlotArgs) -> Result<Exit, CliError> {
     if let Some(law) = &law {
         let in_case = |source: LawError| CliError::LawCase { file: run.case(), source: Box::new(source) };
         let (picture, out_of_range) = beside_run(law, &case, &history, &view).map_err(in_case)?;
-        super::law::warn_out_of_range(&run.case(), &out_of_range);
+        super::print::warn_out_of_range(&run.case(), &out_of_range);
         pictures.push(picture);
     }
     if pictures.is_empty() {

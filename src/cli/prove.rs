@@ -11,7 +11,7 @@ use crate::bench::BenchError;
 use crate::compute::gpu::{DeviceRequest, GpuError};
 use crate::output::{refuse_foreign, write_own};
 use crate::prove::progress::ProveProgress;
-use crate::prove::{self, Options, Part, page};
+use crate::prove::{self, Options, ProofPart, page};
 
 /// Which device is proved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -34,7 +34,7 @@ pub enum ProvedPart {
     Times,
 }
 
-impl From<ProvedPart> for Part {
+impl From<ProvedPart> for ProofPart {
     fn from(part: ProvedPart) -> Self {
         match part {
             ProvedPart::Kernels => Self::Kernels,
@@ -80,7 +80,7 @@ pub fn prove(args: &ProveArgs) -> Result<Exit, CliError> {
         Proved::Gpu => DeviceRequest::Gpu,
     };
     let threads = args.threads.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
-    let only = args.only.iter().copied().map(Part::from).collect();
+    let only = args.only.iter().copied().map(ProofPart::from).collect();
     let options = Options { only, request, threads, quick: args.quick };
     // Minutes of measuring are not lost to a file that cannot be written.
     let markdown = args.out.with_extension("md");

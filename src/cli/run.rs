@@ -7,10 +7,10 @@ use std::time::Duration;
 use clap::Args;
 
 use super::backend::{device_choice, precision_choice};
-use super::input::Input;
+use super::input::InputFile;
 use super::options::{DeviceArgs, Verbosity, out_or_name};
 use super::signals::stop_flag;
-use super::{CliError, Exit};
+use super::{CliError, Exit, called};
 use crate::output::{LoggedProgress, OutputDirectory, RESULT_MARKER, Status, progress, refuse_input};
 use crate::quoting;
 use crate::session::{Canceller, Earlier, Options, SessionError, Simulation};
@@ -58,7 +58,7 @@ pub struct RunArgs {
 pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
     args.verbosity.start_log();
     args.device.start_threads()?;
-    let input = Input::read(&args.case)?;
+    let input = InputFile::read(&args.case)?;
     let case = input.case(&args.set)?;
     let out = out_or_name(args.out.as_ref(), &args.case, "");
     let written = OutputDirectory::existing(&out).case();
@@ -103,7 +103,7 @@ pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
 
 /// The arguments of the program, as they would be typed.
 fn command_line() -> String {
-    super::arguments().into_iter().skip(1).map(quoting::word).collect::<Vec<_>>().join(" ")
+    called::arguments().into_iter().skip(1).map(quoting::word).collect::<Vec<_>>().join(" ")
 }
 
 /// Says how it went, and gives the exit code.

@@ -9,7 +9,7 @@ use clap_complete::Shell;
 
 use crate::output::refuse_foreign;
 
-use super::{CliError, Exit, command, print};
+use super::{CliError, Exit, print};
 
 /// Print completions for a shell.
 ///
@@ -29,16 +29,16 @@ pub struct ManArgs {
     pub dir: PathBuf,
 }
 
-/// Prints the completions.
-pub fn completions(args: &CompletionsArgs) -> Result<Exit, CliError> {
+/// Prints the completions for a command line.
+pub fn completions(args: &CompletionsArgs, mut command: clap::Command) -> Result<Exit, CliError> {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut command(), "asperity", &mut script);
+    clap_complete::generate(args.shell, &mut command, "asperity", &mut script);
     print(&String::from_utf8_lossy(&script))?;
     Ok(Exit::Done)
 }
 
-/// Writes the pages and says where.
-pub fn man(args: &ManArgs) -> Result<Exit, CliError> {
+/// Writes the pages of a command line and says where.
+pub fn man(args: &ManArgs, command: clap::Command) -> Result<Exit, CliError> {
     let failed = |what| move |source| CliError::Out { dir: args.dir.clone(), what, source };
     fs::create_dir_all(&args.dir).map_err(failed("be created"))?;
     for entry in fs::read_dir(&args.dir).map_err(failed("be read"))?.flatten() {
@@ -47,7 +47,7 @@ pub fn man(args: &ManArgs) -> Result<Exit, CliError> {
             refuse_foreign(&entry.path())?;
         }
     }
-    clap_mangen::generate_to(command(), &args.dir).map_err(failed("be written"))?;
+    clap_mangen::generate_to(command, &args.dir).map_err(failed("be written"))?;
     print(&format!("man pages in {0}; `man -l {0}/asperity.1` shows the first\n", args.dir.display()))?;
     Ok(Exit::Done)
 }

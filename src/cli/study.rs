@@ -9,8 +9,8 @@ use std::sync::atomic::Ordering;
 use clap::{Args, ValueEnum};
 
 use super::backend::{device_choice, precision_choice};
-use super::input::Input;
-use super::options::{DeviceArgs, Precision, Verbosity, out_or_name};
+use super::input::InputFile;
+use super::options::{DeviceArgs, PrecisionOption, Verbosity, out_or_name};
 use super::signals::stop_flag;
 use super::{CliError, Exit, cluster};
 use crate::compute::ComputeError;
@@ -75,7 +75,7 @@ pub fn study(args: &StudyArgs) -> Result<Exit, CliError> {
         return cluster::merge(sources, &out, args.verbosity.quiet);
     }
     args.device.start_threads()?;
-    let study = Input::read(file)?.study()?;
+    let study = InputFile::read(file)?.study()?;
     if let Some(arguments) = &args.slurm {
         return cluster::slurm(&study, arguments, &out, &options_of_tasks(args), args.submit);
     }
@@ -91,7 +91,7 @@ fn options_of_tasks(args: &StudyArgs) -> Vec<String> {
     if let Some(device) = args.device.device {
         options.extend(device.to_possible_value().map(|value| format!("--device={}", value.get_name())));
     }
-    if args.device.precision != Precision::default() {
+    if args.device.precision != PrecisionOption::default() {
         options.extend(args.device.precision.to_possible_value().map(|value| format!("--precision={}", value.get_name())));
     }
     if args.retry {

@@ -11,7 +11,7 @@ use super::options::{DeviceArgs, Verbosity};
 use super::{CliError, Exit};
 use crate::compute::ComputeError;
 use crate::output::write_own;
-use crate::verify::{Check, FAMILIES, Fineness, Report, Runner, Verdict, VerifyError, names, table};
+use crate::verify::{Check, FAMILIES, Fineness, Runner, Verdict, VerificationReport, VerifyError, names, table};
 
 /// Compare this build with closed-form solutions.
 ///
@@ -58,7 +58,7 @@ pub fn verify(args: &VerifyArgs) -> Result<Exit, CliError> {
         Ok(selected.backend)
     };
     let mut runner = Runner::new(&mut make, if args.fine { Fineness::Fine } else { Fineness::Quick });
-    let mut report = Report::default();
+    let mut report = VerificationReport::default();
     for family in FAMILIES.iter().filter(|family| all || args.only.iter().any(|only| family.has(only))) {
         let mut rows = family.run(&mut runner).map_err(|error| match error {
             VerifyError::Compute(ComputeError::Device(what)) if report.checks.is_empty() => CliError::Device { what },

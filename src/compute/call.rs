@@ -4,8 +4,8 @@
 
 use std::sync::Arc;
 
-use super::linear::{Solved, System};
-use super::{CaseFields, CaseModel, CaseState, ComputeError, Energies, Outcome, iterate};
+use super::linear::{SolveRequest, Solved};
+use super::{CaseFields, CaseModel, CaseState, ComputeError, Energies, Evaluated, iterate};
 use crate::contact::coulomb::Rows;
 use crate::real::Real;
 
@@ -27,7 +27,7 @@ pub enum Call {
         /// The trial.
         displacement: Arc<[f64]>,
         /// Memory for the answer, in the precision that is asked for; of any size.
-        blocks: Blocks,
+        blocks: TangentBlocks,
     },
     /// The contact conditions there.
     Contact {
@@ -37,7 +37,7 @@ pub enum Call {
         force: Vec<f64>,
     },
     /// Linear systems with the tangent there, where the backend solves them: [`super::About`].
-    Solve(Arc<System>),
+    Solve(Arc<SolveRequest>),
     /// Newton's iterates, where they stay. Only of backends that keep them: [`super::About`].
     Iterate(iterate::Request),
     /// A displacement is the committed one from now on.
@@ -66,15 +66,15 @@ pub enum Answer {
         /// dW/du, three a node.
         force: Vec<f64>,
         /// How it went.
-        outcome: Outcome,
+        outcome: Evaluated,
     },
     /// Of [`Call::Tangent`].
     Tangent {
         /// Blocks d f_i / d u_j in the order of [`crate::mesh::pattern::Pattern`], row-major. They
-        /// mean nothing if the outcome is not [`Outcome::Valid`].
-        blocks: Blocks,
+        /// mean nothing if the outcome is not [`Evaluated::Valid`].
+        blocks: TangentBlocks,
         /// How it went.
-        outcome: Outcome,
+        outcome: Evaluated,
     },
     /// Of [`Call::Contact`]: the rows of each contact node.
     Contact(Vec<Rows<f64>>),
@@ -87,7 +87,7 @@ pub enum Answer {
         /// Energies of the new committed state.
         energies: Energies,
         /// How it went; an invalid state is not committed.
-        outcome: Outcome,
+        outcome: Evaluated,
     },
     /// Of [`Call::Fields`].
     Fields(CaseFields),
@@ -142,14 +142,14 @@ impl Call {
 /// The blocks of a tangent: in f32 for multigrid, which holds its matrices so; in f64 for the
 /// direct solver, and for comparisons.
 #[derive(Clone, Debug)]
-pub enum Blocks {
+pub enum TangentBlocks {
     /// In f64.
     Double(Vec<[f64; 9]>),
     /// In f32.
     Single(Vec<[f32; 9]>),
 }
 
-impl Blocks {
+impl TangentBlocks {
     /// None, in the same precision.
     pub fn none(&self) -> Self {
         match self {
@@ -168,31 +168,31 @@ impl Blocks {
     }
 }
 
-/// A precision that [`Blocks`] have.
+/// A precision that [`TangentBlocks`] have.
 pub trait OfBlocks: Real {
     /// As blocks.
-    fn wrap(blocks: Vec<[Self; 9]>) -> Blocks;
+    fn wrap(blocks: Vec<[Self; 9]>) -> TangentBlocks;
     /// Out of blocks, if they are in this precision.
-    fn unwrap(blocks: Blocks) -> Option<Vec<[Self; 9]>>;
+    fn unwrap(blocks: TangentBlocks) -> Option<Vec<[Self; 9]>>;
 }
 
 impl OfBlocks for f64 {
-    fn wrap(blocks: Vec<[Self; 9]>) -> Blocks {
-        Blocks::Double(blocks)
+    fn wrap(blocks: Vec<[Self; 9]>) -> TangentBlocks {
+        TangentBlocks::Double(blocks)
     }
 
-    fn unwrap(blocks: Blocks) -> Option<Vec<[Self; 9]>> {
-        if let Blocks::Double(blocks) = blocks { Some(blocks) } else { None }
+    fn unwrap(blocks: TangentBlocks) -> Option<Vec<[Self; 9]>> {
+        if let TangentBlocks::Double(blocks) = blocks { Some(blocks) } else { None }
     }
 }
 
 impl OfBlocks for f32 {
-    fn wrap(blocks: Vec<[Self; 9]>) -> Blocks {
-        Blocks::Single(blocks)
+    fn wrap(blocks: Vec<[Self; 9]>) -> TangentBlocks {
+        TangentBlocks::Single(blocks)
     }
 
-    fn unwrap(blocks: Blocks) -> Option<Vec<[Self; 9]>> {
-        if let Blocks::Single(blocks) = blocks { Some(blocks) } else { None }
+    fn unwrap(blocks: TangentBlocks) -> Option<Vec<[Self; 9]>> {
+        if let TangentBlocks::Single(blocks) = blocks { Some(blocks) } else { None }
     }
 }
 

@@ -7,13 +7,14 @@ use rayon::prelude::*;
 
 use super::gather::GatherPlan;
 use super::linear::Solved;
-use super::sweep::{Keep, Sweep};
+use super::sweep::{Keep, WaveSweep};
 use super::{
-    About, Answer, Blocks, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Fault, Outcome,
+    About, Answer, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Evaluated, Fault,
+    TangentBlocks,
 };
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, contact_rows};
 use crate::contact::plane::{gap, slip};
-use crate::element::hex8::{self, Geometry, Invalid, NODES, Nodal, Points, State, Tangent, pair};
+use crate::element::hex8::{self, ElementGeometry, ElementState, Invalid, NODES, Nodal, Points, Tangent, pair};
 use crate::lanes::array;
 use crate::material::multistep::Flow;
 use crate::material::{Material, PointState};
@@ -28,26 +29,27 @@ const WAVE_CHUNK: usize = 16;
 /// Change of an element's displacement gradient within a step up to which a tangent in single
 /// precision that was formed before is taken again. It is off by about as much, a thousandth of
 /// what linear systems are solved to; at ten times that, converged forces were 4e-6 from those of a
-/// device, which forms all anew. What yields, or is soon to, is formed anew.
+/// device, which forms all anew. What yields, or is soon to, is formed anew. Half and twice of it:
+/// `benches/constants`.
 const SAME_TANGENT: f64 = 1e-4;
 /// Up to this bulk over shear modulus, that of nu = 0.3; beyond, the more volume outweighs shape,
 /// the less, as linear systems are solved to less (see `solver::loosest_linear`).
 const SAME_UP_TO: f64 = 13.0 / 6.0;
 
 /// One case as the CPU holds it; its tangents are formed in `T`.
-struct Case<R, T> {
+struct CpuCase<R, T> {
     material: Material<R>,
     /// Material of the elements from this one on.
     opponent: (usize, Material<R>),
     friction: Friction<R>,
     mesh: Arc<Mesh>,
-    geometry: Vec<Geometry<R>>,
+    geometry: Vec<ElementGeometry<R>>,
     /// What tangents take of material and geometry.
     tangent_material: Material<T>,
     tangent_opponent: Material<T>,
-    tangent_geometry: Vec<Geometry<T>>,
+    tangent_geometry: Vec<ElementGeometry<T>>,
     /// Committed state of each element.
-    state: Vec<State<R>>,
+    state: Vec<ElementState<R>>,
     /// The states from which the present step starts.
     start: Vec<Points<R>>,
     /// Committed displacement, three a node.
@@ -66,7 +68,7 @@ struct Case<R, T> {
 
 /// The tangent of an element, and where it was formed.
 #[derive(Clone)]
-struct Held<T> {
+struct KeptTangent<T> {
     tangent: Tangent<T>,
     step: u64,
     increment: Nodal<T>,
@@ -74,7 +76,7 @@ struct Held<T> {
     reach: T,
 }
 
-impl<T: Real> Held<T> {
+impl<T: Real> KeptTangent<T> {
     const NONE: Self = Self { tangent: [[T::ZERO; 9]; hex8::PAIRS], step: 0, increment: [[T::ZERO; 3]; NODES], reach: T::ZERO };
 
     /// Whether it will do for an increment of a step.
@@ -94,14 +96,14 @@ impl<T: Real> Held<T> {
 /// Tangents in `R` are exact.
 pub struct Cpu<R, T = R> {
     models: Vec<CaseModel>,
-    cases: Vec<Case<R, T>>,
+    cases: Vec<CpuCase<R, T>>,
     plan: GatherPlan,
     element_force: Vec<Nodal<R>>,
-    sweep: Sweep,
+    sweep: WaveSweep,
     /// Tangents of the elements within the sweep's front, or of all elements, of each case.
-    element_tangent: Vec<Vec<Held<T>>>,
+    element_tangent: Vec<Vec<KeptTangent<T>>>,
     /// State and elastic energy of each element at the end of a step, before it is committed.
-    next: Vec<(State<R>, R)>,
+    next: Vec<(ElementState<R>, R)>,
 }
 
 impl<R: Real> Cpu<R> {
@@ -126,7 +128,7 @@ impl<R: Real, T: Real> Cpu<R, T> {
                 cases: Vec::new(),
                 plan: GatherPlan { pattern: crate::mesh::pattern::Pattern::from_elements(0, &[]), offset: Vec::new() },
                 element_force: Vec::new(),
-                sweep: Sweep::default(),
+                sweep: WaveSweep::default(),
                 element_tangent: Vec::new(),
                 next: Vec::new(),
             });
@@ -138,23 +140,23 @@ impl<R: Real, T: Real> Cpu<R, T> {
                 return Err(ComputeError::Connectivity { case });
             }
         }
-        let cases = models.iter().map(Case::new).collect::<Result<_, _>>()?;
+        let cases = models.iter().map(CpuCase::new).collect::<Result<_, _>>()?;
         // The front of one case has room for the next one's.
         let (keep, kept) = if takes_again::<R, T>() { (Keep::All, models.len()) } else { (Keep::Front, 1) };
-        let sweep = Sweep::new(&first.mesh, keep);
+        let sweep = WaveSweep::new(&first.mesh, keep);
         Ok(Self {
             models,
             cases,
             plan,
             element_force: vec![[[R::ZERO; 3]; NODES]; elements],
-            element_tangent: vec![vec![Held::NONE; sweep.slots()]; kept],
+            element_tangent: vec![vec![KeptTangent::NONE; sweep.slots()]; kept],
             sweep,
             next: Vec::new(),
         })
     }
 }
 
-impl<R: Real, T: Real> Case<R, T> {
+impl<R: Real, T: Real> CpuCase<R, T> {
     fn new(model: &CaseModel) -> Result<Self, ComputeError> {
         let mesh = model.mesh.clone();
         let opponent = model.opponent.as_ref().unwrap_or(&model.material);
@@ -174,7 +176,7 @@ impl<R: Real, T: Real> Case<R, T> {
                 Friction::Coulomb(mu) => Friction::Coulomb(R::of(mu)),
                 Friction::Stick => Friction::Stick,
             },
-            state: vec![State::default(); mesh.elements.len()],
+            state: vec![ElementState::default(); mesh.elements.len()],
             start: vec![Points::default(); mesh.elements.len()],
             committed: vec![0.0; 3 * mesh.nodes.len()],
             weight: mesh.contact_size.iter().map(|&h| R::of(CONTACT_WEIGHT * h)).collect(),
@@ -225,10 +227,10 @@ impl<R: Real, T: Real> Case<R, T> {
     /// elements is there.
     fn tangent<B: Real>(
         &self,
-        (plan, sweep, tangents): (&GatherPlan, &Sweep, &mut [Held<T>]),
+        (plan, sweep, tangents): (&GatherPlan, &WaveSweep, &mut [KeptTangent<T>]),
         displacement: &[f64],
         blocks: &mut [[B; 9]],
-    ) -> Outcome {
+    ) -> Evaluated {
         let mut rows = block_rows(plan, blocks);
         for (elements, complete) in sweep.waves() {
             let slot = sweep.slot(elements.start);
@@ -250,7 +252,7 @@ impl<R: Real, T: Real> Case<R, T> {
                     out.reach = case.reach[e].min(case.size[e] * margin);
                     Ok(())
                 });
-            if outcome != Outcome::Valid {
+            if outcome != Evaluated::Valid {
                 return outcome;
             }
             let mut complete: Vec<_> = complete.iter().map(|&node| (node, std::mem::take(&mut rows[node as usize]))).collect();
@@ -259,7 +261,7 @@ impl<R: Real, T: Real> Case<R, T> {
                 gather_row(plan, &self.mesh, *node as usize, |element| &tangents[sweep.slot(element)].tangent, row);
             });
         }
-        Outcome::Valid
+        Evaluated::Valid
     }
 
     /// Evaluates `f` on the elements from `first` on into `out`, so many at a time in each thread;
@@ -271,7 +273,7 @@ impl<R: Real, T: Real> Case<R, T> {
         displacement: &[f64],
         out: &mut [O],
         f: impl Fn(&Self, usize, &Nodal<N>, &Nodal<N>, &mut O) -> Result<(), Invalid> + Sync,
-    ) -> Outcome {
+    ) -> Evaluated {
         out.par_chunks_mut(at_a_time)
             .enumerate()
             .map(|(chunk, out)| {
@@ -291,7 +293,7 @@ impl<R: Real, T: Real> Case<R, T> {
                     (x, y) => x.or(y),
                 },
             )
-            .map_or(Outcome::Valid, |(element, invalid)| Outcome::Invalid(Fault::of(element, invalid)))
+            .map_or(Evaluated::Valid, |(element, invalid)| Evaluated::Invalid(Fault::of(element, invalid)))
     }
 }
 
@@ -374,14 +376,14 @@ impl<R: Real, T: Real> Cpu<R, T> {
         Answer::Force { force, outcome }
     }
 
-    fn tangent(&mut self, case: usize, displacement: &[f64], blocks: Blocks) -> Answer {
+    fn tangent(&mut self, case: usize, displacement: &[f64], blocks: TangentBlocks) -> Answer {
         let tangents = case.min(self.element_tangent.len() - 1);
         let case = &self.cases[case];
         let assembly = (&self.plan, &self.sweep, self.element_tangent[tangents].as_mut_slice());
         let mut blocks = blocks.resized(self.plan.pattern.entries());
         let outcome = match &mut blocks {
-            Blocks::Double(blocks) => case.tangent(assembly, displacement, blocks),
-            Blocks::Single(blocks) => case.tangent(assembly, displacement, blocks),
+            TangentBlocks::Double(blocks) => case.tangent(assembly, displacement, blocks),
+            TangentBlocks::Single(blocks) => case.tangent(assembly, displacement, blocks),
         };
         Answer::Tangent { blocks, outcome }
     }
@@ -409,13 +411,13 @@ impl<R: Real, T: Real> Cpu<R, T> {
     fn commit(&mut self, index: usize, displacement: &[f64]) -> Answer {
         let case = &self.cases[index];
         let mut energies = Energies::default();
-        self.next.resize(case.state.len(), (State::default(), R::ZERO));
+        self.next.resize(case.state.len(), (ElementState::default(), R::ZERO));
         let outcome = case.each_element(0, CHUNK, displacement, &mut self.next, |case, e, committed, increment, out| {
             let (state, start) = (&case.state[e], &case.start[e]);
             *out = hex8::update(&case.geometry[e], case.material(e), state, start, committed, increment)?;
             Ok(())
         });
-        if outcome == Outcome::Valid {
+        if outcome == Evaluated::Valid {
             let case = &mut self.cases[index];
             let opponent = case.opponent.0;
             for (e, ((state, start), (next, elastic))) in case.state.iter_mut().zip(&mut case.start).zip(&self.next).enumerate() {
@@ -481,10 +483,10 @@ impl<R: Real, T: Real> Cpu<R, T> {
         if !model.is_alike(&self.models[case]) {
             return Err(ComputeError::Connectivity { case });
         }
-        self.cases[case] = Case::new(&model)?;
+        self.cases[case] = CpuCase::new(&model)?;
         // Tangents are known by the step that they are of, which is counted anew.
         if let Some(held) = self.element_tangent.get_mut(case) {
-            held.fill(Held::NONE);
+            held.fill(KeptTangent::NONE);
         }
         self.models[case] = model;
         Ok(())
@@ -520,9 +522,10 @@ fn convert<R: Real, T: Real>(x: R) -> T {
     T::of(x.to_f64())
 }
 
-fn geometry_of<R: Real>(mesh: &Mesh) -> Result<Vec<Geometry<R>>, ComputeError> {
+fn geometry_of<R: Real>(mesh: &Mesh) -> Result<Vec<ElementGeometry<R>>, ComputeError> {
     let of_element = |element: usize| {
-        Geometry::new(&mesh.corners(element)).map_err(|invalid| ComputeError::InvertedMesh { element, point: invalid.point() })
+        ElementGeometry::new(&mesh.corners(element))
+            .map_err(|invalid| ComputeError::InvertedMesh { element, point: invalid.point() })
     };
     (0..mesh.elements.len()).map(of_element).collect()
 }

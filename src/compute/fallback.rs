@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::cpu::Cpu;
 use super::handle::at;
 use super::traffic::Traffic;
-use super::{About, Answer, Call, CaseModel, CaseState, Compute, ComputeError, Description, Outcome};
+use super::{About, Answer, Call, CaseModel, CaseState, Compute, ComputeError, Description, Evaluated};
 
 /// A device with a copy of every committed state on the host, and the CPU in waiting.
 ///
@@ -58,7 +58,7 @@ impl Fallback {
         let Some(device) = &mut self.device else { return Ok(()) };
         let mut copies = Vec::new();
         for ((case, call), answer) in calls.iter().zip(answers) {
-            if let (Call::Commit { .. }, Answer::Commit { outcome: Outcome::Valid, .. }) = (call, answer) {
+            if let (Call::Commit { .. }, Answer::Commit { outcome: Evaluated::Valid, .. }) = (call, answer) {
                 copies.push((*case, Arc::new(at(device.as_mut(), *case).state()?)));
             }
         }

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::call::{Answer, Call, OfBlocks, not_asked};
 use super::iterate::{Ask, Keeps, Plate, Reply, Request};
-use super::linear::{Solved, System};
-use super::{CaseFields, CaseModel, CaseState, Compute, ComputeError, Energies, Outcome};
+use super::linear::{SolveRequest, Solved};
+use super::{CaseFields, CaseModel, CaseState, Compute, ComputeError, Energies, Evaluated};
 use crate::contact::coulomb::Rows;
 use crate::mesh::Mesh;
 
@@ -43,7 +43,7 @@ impl CaseHandle<'_> {
     }
 
     /// Internal forces at a trial displacement.
-    pub fn internal_force(&mut self, displacement: &[f64], force: &mut Vec<f64>) -> Result<Outcome, ComputeError> {
+    pub fn internal_force(&mut self, displacement: &[f64], force: &mut Vec<f64>) -> Result<Evaluated, ComputeError> {
         let answer = self.call(Call::Force { displacement: displacement.into() })?;
         let Answer::Force { force: found, outcome } = answer else { return Err(not_asked()) };
         *force = found;
@@ -51,7 +51,7 @@ impl CaseHandle<'_> {
     }
 
     /// Tangent blocks at a trial displacement. After an error there are none.
-    pub fn tangent<T: OfBlocks>(&mut self, displacement: &[f64], blocks: &mut Vec<[T; 9]>) -> Result<Outcome, ComputeError> {
+    pub fn tangent<T: OfBlocks>(&mut self, displacement: &[f64], blocks: &mut Vec<[T; 9]>) -> Result<Evaluated, ComputeError> {
         let memory = T::wrap(std::mem::take(blocks));
         let answer = self.call(Call::Tangent { displacement: displacement.into(), blocks: memory })?;
         let Answer::Tangent { blocks: found, outcome } = answer else { return Err(not_asked()) };
@@ -69,7 +69,7 @@ impl CaseHandle<'_> {
     }
 
     /// Linear systems with the tangent, where the backend solves them.
-    pub fn solve(&mut self, system: System) -> Result<Solved, ComputeError> {
+    pub fn solve(&mut self, system: SolveRequest) -> Result<Solved, ComputeError> {
         match self.call(Call::Solve(system.into()))? {
             Answer::Solved(solved) => Ok(solved),
             _ => Err(not_asked()),
@@ -86,7 +86,7 @@ impl CaseHandle<'_> {
     }
 
     /// Makes a trial displacement the committed state.
-    pub fn commit(&mut self, displacement: &[f64]) -> Result<(Energies, Outcome), ComputeError> {
+    pub fn commit(&mut self, displacement: &[f64]) -> Result<(Energies, Evaluated), ComputeError> {
         match self.call(Call::Commit { displacement: displacement.into() })? {
             Answer::Commit { energies, outcome } => Ok((energies, outcome)),
             _ => Err(not_asked()),

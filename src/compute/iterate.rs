@@ -6,7 +6,7 @@
 //! leads from the one to the other. Over a plane only.
 
 use super::linear::SideReport;
-use super::{Energies, Fault, Outcome};
+use super::{Energies, Evaluated, Fault};
 use crate::contact::coulomb::Status;
 use crate::mesh::Mesh;
 
@@ -118,7 +118,7 @@ pub struct Request {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reading {
     /// How its evaluation went; nothing else means anything if it is not valid.
-    pub outcome: Outcome,
+    pub outcome: Evaluated,
     /// Norm of the residual: free forces, contact residuals, missing displacements and the missing
     /// normal force, all as forces.
     pub merit: f64,
@@ -143,7 +143,7 @@ pub struct Reading {
 
 impl Reading {
     /// Of a trial that could not be evaluated.
-    pub fn of_nothing(outcome: Outcome) -> Self {
+    pub fn of_nothing(outcome: Evaluated) -> Self {
         Self { outcome, merit: f64::INFINITY, ..Self::default() }
     }
 
@@ -165,7 +165,7 @@ impl Reading {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Corrected {
     /// How the tangent went.
-    pub tangent: Outcome,
+    pub tangent: Evaluated,
     /// How the solution went. Where it did not converge, the rest means nothing.
     pub report: SideReport,
     /// Where a force is held: the same of the response to a unit indentation.
@@ -194,7 +194,7 @@ pub struct SettledPoint {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settled {
     /// How it went; an invalid state is not committed.
-    pub outcome: Outcome,
+    pub outcome: Evaluated,
     /// Energies of the new state.
     pub energies: Energies,
     /// Its contact points.

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use super::Outcome;
+use super::Evaluated;
 use crate::contact::coulomb::Rows;
 
 /// Asks to form the tangent of one case and to solve linear systems with it, without bringing it to
 /// the host. Over a plane only: contact conditions are stated in the axes of space.
 #[derive(Clone, Debug)]
-pub struct System {
+pub struct SolveRequest {
     /// Trial displacement, three a node.
     pub displacement: Arc<[f64]>,
     /// Contact conditions; those of points that slide replace the rows of their nodes.
@@ -41,7 +41,7 @@ pub struct Side {
 #[derive(Clone, Debug)]
 pub struct Solved {
     /// How the tangent went.
-    pub outcome: Outcome,
+    pub outcome: Evaluated,
     /// By side; none where nobody tried, because the backend solves no systems.
     pub solutions: Vec<Solution>,
 }
@@ -49,7 +49,7 @@ pub struct Solved {
 impl Solved {
     /// Of a backend that solves none.
     pub fn not_tried() -> Self {
-        Self { outcome: Outcome::Valid, solutions: Vec::new() }
+        Self { outcome: Evaluated::Valid, solutions: Vec::new() }
     }
 }
 

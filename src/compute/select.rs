@@ -193,34 +193,34 @@ mod device {
 
     use super::{DeviceChoice, PrecisionChoice, Selected, SharedCalls, cpu, notes_of};
     use crate::compute::fallback::Fallback;
-    use crate::compute::gpu::trial::Trial;
+    use crate::compute::gpu::trial::TrialRun;
     use crate::compute::gpu::{DeviceRequest, Gpu, GpuContext, GpuError, KernelTimes, Mixed, Precision};
     use crate::compute::lost::hooked;
     use crate::compute::{CaseModel, Compute, ComputeError};
 
     /// A device, or none, and what the user should know of how that was decided.
-    struct Opened {
+    struct OpenedDevice {
         context: Option<GpuContext>,
         notes: Vec<String>,
     }
 
-    fn open(device: DeviceChoice) -> Result<Opened, GpuError> {
+    fn open(device: DeviceChoice) -> Result<OpenedDevice, GpuError> {
         let request = match device {
-            DeviceChoice::Cpu => return Ok(Opened { context: None, notes: Vec::new() }),
+            DeviceChoice::Cpu => return Ok(OpenedDevice { context: None, notes: Vec::new() }),
             DeviceChoice::Gpu => DeviceRequest::Gpu,
             DeviceChoice::Auto => DeviceRequest::Auto,
         };
         match GpuContext::open(request)? {
             Some(context) if device == DeviceChoice::Auto && !context.is_named() => {
-                let trial = Trial::of(&context);
+                let trial = TrialRun::of(&context);
                 Ok(judged(context, trial))
             }
-            context => Ok(Opened { context, notes: Vec::new() }),
+            context => Ok(OpenedDevice { context, notes: Vec::new() }),
         }
     }
 
     /// A device that `auto` found, if the measurement is in favour of it.
-    fn judged(context: GpuContext, trial: Result<Trial, ComputeError>) -> Opened {
+    fn judged(context: GpuContext, trial: Result<TrialRun, ComputeError>) -> OpenedDevice {
         let name = context.adapter().name.clone();
         let (takes, note) = match trial {
             Ok(trial) if trial.takes_device() => (true, format!("{name} was chosen: {trial}")),
@@ -228,12 +228,12 @@ mod device {
             Err(error) => (false, format!("the GPU could not be used ({error}); the CPU was taken instead")),
         };
         log::info!("device: {note}");
-        Opened { context: takes.then_some(context), notes: vec![note] }
+        OpenedDevice { context: takes.then_some(context), notes: vec![note] }
     }
 
-    fn opened(device: DeviceChoice, profiled: bool) -> Result<Opened, GpuError> {
-        let Opened { context, notes } = open(device)?;
-        Ok(Opened { context: if profiled { context.map(GpuContext::with_profile) } else { context }, notes })
+    fn opened(device: DeviceChoice, profiled: bool) -> Result<OpenedDevice, GpuError> {
+        let OpenedDevice { context, notes } = open(device)?;
+        Ok(OpenedDevice { context: if profiled { context.map(GpuContext::with_profile) } else { context }, notes })
     }
 
     /// The same with notes before its own.
@@ -244,7 +244,7 @@ mod device {
     /// Whether `auto` takes a GPU that is there and real, and why; none where there is none, or one
     /// is named.
     pub fn measured() -> Option<(bool, String)> {
-        let Opened { context, notes } = open(DeviceChoice::Auto).ok()?;
+        let OpenedDevice { context, notes } = open(DeviceChoice::Auto).ok()?;
         Some((context.is_some(), notes.into_iter().next()?))
     }
 
@@ -254,7 +254,7 @@ mod device {
         models: Vec<CaseModel>,
     ) -> Result<Selected, ComputeError> {
         let (opened, notes) = match open(device) {
-            Ok(Opened { context, notes }) => (Ok(context), notes),
+            Ok(OpenedDevice { context, notes }) => (Ok(context), notes),
             Err(error) => (Err(error), Vec::new()),
         };
         select_on(opened, device, precision, models).map(|selected| noted(&notes, selected))
@@ -293,13 +293,13 @@ mod device {
         }
 
         fn new(choice: DeviceChoice, profiled: bool) -> Result<Self, ComputeError> {
-            let Opened { context, notes } = match opened(choice, profiled) {
-                Ok(Opened { context: None, .. }) if choice == DeviceChoice::Gpu => return Err(GpuError::NoAdapter.into()),
+            let OpenedDevice { context, notes } = match opened(choice, profiled) {
+                Ok(OpenedDevice { context: None, .. }) if choice == DeviceChoice::Gpu => return Err(GpuError::NoAdapter.into()),
                 Err(error) if choice == DeviceChoice::Gpu => return Err(error.into()),
                 Ok(opened) => opened,
                 Err(error) => {
                     log::info!("the GPU could not be used ({error}); the CPU was taken instead");
-                    Opened { context: None, notes: Vec::new() }
+                    OpenedDevice { context: None, notes: Vec::new() }
                 }
             };
             Ok(Self { choice, profiled, context: Mutex::new(context.map(Arc::new)), notes, shared: Mutex::default() })

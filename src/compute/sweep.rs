@@ -22,14 +22,14 @@ pub(super) enum Keep {
 
 /// Waves of successive elements; after each, the rows that are complete.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Sweep {
+pub(super) struct WaveSweep {
     elements: usize,
     /// Nodes whose last element is in each wave.
     rows: Vec<Vec<u32>>,
     slots: usize,
 }
 
-impl Sweep {
+impl WaveSweep {
     /// Plans the sweep of a mesh; the contributions of all elements are kept, or of those alone
     /// whose rows are not complete.
     pub fn new(mesh: &Mesh, keep: Keep) -> Self {
@@ -88,8 +88,8 @@ mod tests {
         })
         .unwrap();
         for mesh in [brick(4, 3, 5, [1.0; 3]).unwrap(), brick(40, 3, 30, [1.0; 3]).unwrap(), sphere] {
-            let sweep = Sweep::new(&mesh, Keep::Front);
-            assert_eq!(Sweep::new(&mesh, Keep::All).slots(), mesh.elements.len());
+            let sweep = WaveSweep::new(&mesh, Keep::Front);
+            assert_eq!(WaveSweep::new(&mesh, Keep::All).slots(), mesh.elements.len());
             let mut kept = vec![usize::MAX; sweep.slots()];
             let mut summed = vec![0; mesh.nodes.len()];
             for (elements, rows) in sweep.waves() {
@@ -119,7 +119,7 @@ mod tests {
             first_layer: 1.0,
         })
         .unwrap();
-        let sweep = Sweep::new(&mesh, Keep::Front);
+        let sweep = WaveSweep::new(&mesh, Keep::Front);
         assert!(4 * sweep.slots() < mesh.elements.len(), "{} of {}", sweep.slots(), mesh.elements.len());
     }
 }

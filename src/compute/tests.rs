@@ -5,10 +5,10 @@ mod hanging;
 
 use std::sync::Arc;
 
-use super::call::{Answer, Blocks, Call};
+use super::call::{Answer, Call, TangentBlocks};
 use super::cpu::Cpu;
 use super::handle::{CaseHandle, at};
-use super::{CaseModel, Compute, ComputeError, Energies, Fault, Outcome};
+use super::{CaseModel, Compute, ComputeError, Energies, Evaluated, Fault};
 use crate::contact::coulomb::{Friction, Point, Rows, contact_rows};
 use crate::material::hardening::FlowStress;
 use crate::material::{Elasticity, Material};
@@ -89,8 +89,8 @@ fn answer(backend: &mut dyn Compute, case: usize, u: &[f64]) -> Said {
     let mut force = vec![0.0; u.len()];
     let mut blocks = vec![[0.0_f64; 9]; Pattern::from_elements(mesh.nodes.len(), &mesh.elements).entries()];
     let mut rows = no_rows(&mesh);
-    assert_eq!(handle.internal_force(u, &mut force).unwrap(), Outcome::Valid);
-    assert_eq!(handle.tangent(u, &mut blocks).unwrap(), Outcome::Valid);
+    assert_eq!(handle.internal_force(u, &mut force).unwrap(), Evaluated::Valid);
+    assert_eq!(handle.tangent(u, &mut blocks).unwrap(), Evaluated::Valid);
     handle.contact(u, &force, &mut rows).unwrap();
     let row = |r: &Rows<f64>| {
         let numbers =
@@ -102,7 +102,7 @@ fn answer(backend: &mut dyn Compute, case: usize, u: &[f64]) -> Said {
 
 fn commit(backend: &mut dyn Compute, case: usize, u: &[f64]) -> Energies {
     let (energies, outcome) = at(backend, case).commit(u).unwrap();
-    assert_eq!(outcome, Outcome::Valid);
+    assert_eq!(outcome, Evaluated::Valid);
     energies
 }
 
@@ -139,7 +139,7 @@ fn tangent(backend: &mut dyn Compute, case: usize, u: &[f64]) -> Vec<[f32; 9]> {
     let mut handle = at(backend, case);
     let mesh = handle.model().mesh.clone();
     let mut blocks = vec![[0.0_f32; 9]; Pattern::from_elements(mesh.nodes.len(), &mesh.elements).entries()];
-    assert_eq!(handle.tangent(u, &mut blocks).unwrap(), Outcome::Valid);
+    assert_eq!(handle.tangent(u, &mut blocks).unwrap(), Evaluated::Valid);
     blocks
 }
 
@@ -191,7 +191,7 @@ fn a_tangent_in_single_precision_is_taken_again_within_a_step_and_close_by() {
     torn[7] = f64::NAN;
     let mut blocks = vec![[0.0_f32; 9]; exact.len()];
     let outcome = CaseHandle { backend: &mut backend, case: 1 }.tangent(&torn, &mut blocks).unwrap();
-    assert_ne!(outcome, Outcome::Valid);
+    assert_ne!(outcome, Evaluated::Valid);
     assert!(tangent(&mut backend, 1, &at(1e-3)) == tangent(&mut fresh(), 1, &at(1e-3)), "after a failure");
 }
 
@@ -214,9 +214,10 @@ fn a_batch_gives_each_case_what_it_gets_alone() {
         let u: Vec<_> = meshes.iter().map(|m| displacement(m, 1e-3)).collect();
         let all = |call: fn(&[f64]) -> Call| u.iter().enumerate().map(|(case, u)| (case, call(u))).collect();
         let forces = together.call(all(|u| Call::Force { displacement: u.into() })).unwrap();
-        let tangents = together.call(all(|u| Call::Tangent { displacement: u.into(), blocks: Blocks::Double(vec![]) })).unwrap();
+        let tangents =
+            together.call(all(|u| Call::Tangent { displacement: u.into(), blocks: TangentBlocks::Double(vec![]) })).unwrap();
         for (case, answers) in forces.iter().zip(&tangents).enumerate() {
-            let (Answer::Force { force, .. }, Answer::Tangent { blocks: Blocks::Double(blocks), .. }) = answers else {
+            let (Answer::Force { force, .. }, Answer::Tangent { blocks: TangentBlocks::Double(blocks), .. }) = answers else {
                 panic!("{answers:?}");
             };
             assert!(bits(force) == alone[case].0[0].force, "force of case {case}");
@@ -314,12 +315,12 @@ fn what_is_not_committed_leaves_no_trace() {
         let mut force = vec![0.0; inverted.len()];
         let mut handle = at(disturbed.as_mut(), 0);
         let bad = handle.internal_force(&inverted, &mut force).unwrap();
-        assert!(matches!(bad, Outcome::Invalid(Fault::Inverted { .. })), "{bad:?}");
+        assert!(matches!(bad, Evaluated::Invalid(Fault::Inverted { .. })), "{bad:?}");
         assert_eq!(handle.commit(&inverted).unwrap().1, bad);
         let mut meaningless = displacement(&mesh, 4e-3);
         meaningless[7] = f64::NAN;
         let refused = handle.commit(&meaningless).unwrap().1;
-        assert!(matches!(refused, Outcome::Invalid(Fault::Deformation { .. })), "{refused:?}");
+        assert!(matches!(refused, Evaluated::Invalid(Fault::Deformation { .. })), "{refused:?}");
         assert_eq!(at(disturbed.as_mut(), 0).state().unwrap(), before);
         assert!(run(clean.as_mut(), 0) == run(disturbed.as_mut(), 0));
     }
@@ -339,7 +340,7 @@ fn the_first_inverted_element_is_named_at_any_thread_count() {
             let mut force = vec![0.0; u.len()];
             let outcome = at(&mut backend, 0).internal_force(&u, &mut force).unwrap();
             let first = mesh.elements.iter().position(|e| e.contains(&mesh.elements[70][6])).unwrap();
-            let named = matches!(outcome, Outcome::Invalid(Fault::Inverted { element, .. }) if element == first);
+            let named = matches!(outcome, Evaluated::Invalid(Fault::Inverted { element, .. }) if element == first);
             assert!(named, "{outcome:?}, {first} expected");
         });
     }
@@ -399,9 +400,9 @@ fn a_refused_commit_keeps_its_neighbours_in_the_same_call() {
     let [Answer::Commit { energies, outcome }, Answer::Commit { outcome: refused, .. }] = answers[..] else {
         panic!("{answers:?}");
     };
-    assert_eq!(outcome, Outcome::Valid);
+    assert_eq!(outcome, Evaluated::Valid);
     assert!(energies.plastic > 0.0);
-    assert!(matches!(refused, Outcome::Invalid(Fault::Deformation { .. })));
+    assert!(matches!(refused, Evaluated::Invalid(Fault::Deformation { .. })));
     assert_eq!(at(&mut backend, 0).state().unwrap().displacement, good);
     assert!(at(&mut backend, 1).state().unwrap().displacement.iter().all(|x| *x == 0.0));
 }

@@ -2,7 +2,7 @@
 //! program and by themselves.
 
 use super::handle::at;
-use super::{About, Answer, Blocks, Call, CaseModel, Compute, ComputeError, Energies, Fault, Outcome};
+use super::{About, Answer, Call, CaseModel, Compute, ComputeError, Energies, Evaluated, Fault, TangentBlocks};
 use crate::material::Refusal;
 
 /// The environment variable of the hook, which only builds with debug assertions look at, those of
@@ -103,16 +103,16 @@ impl<C: Compute> Wrong<C> {
                     force[unknown] = f64::NAN;
                 }
                 if self.is(Kind::Material) && at(&mut self.backend, case).state()?.displacement != call.displacement() {
-                    *outcome = Outcome::Invalid(REFUSAL);
+                    *outcome = Evaluated::Invalid(REFUSAL);
                 }
             }
             // In the middle of the matrix: the first rows may be prescribed ones, which nobody
             // reads.
-            Answer::Tangent { blocks: Blocks::Double(blocks), .. } if self.is(Kind::Tangent) => {
+            Answer::Tangent { blocks: TangentBlocks::Double(blocks), .. } if self.is(Kind::Tangent) => {
                 let middle = blocks.len() / 2;
                 blocks[middle] = [f64::NAN; 9];
             }
-            Answer::Tangent { blocks: Blocks::Single(blocks), .. } if self.is(Kind::Tangent) => {
+            Answer::Tangent { blocks: TangentBlocks::Single(blocks), .. } if self.is(Kind::Tangent) => {
                 let middle = blocks.len() / 2;
                 blocks[middle] = [f32::NAN; 9];
             }
@@ -136,7 +136,7 @@ impl<C: Compute> Compute for Wrong<C> {
     fn call(&mut self, calls: Vec<(usize, Call)>) -> Result<Vec<Answer>, ComputeError> {
         let commits = calls.iter().any(|(_, call)| call.commits());
         if commits && self.is(Kind::Commit) {
-            let refused = Answer::Commit { energies: Energies::default(), outcome: Outcome::Invalid(REFUSAL) };
+            let refused = Answer::Commit { energies: Energies::default(), outcome: Evaluated::Invalid(REFUSAL) };
             return Ok(vec![refused; calls.len()]);
         }
         let asked: Vec<(usize, Call)> = calls.iter().map(|(case, call)| (*case, call.again())).collect();

@@ -3,7 +3,7 @@
 use crate::compute::cpu::Cpu;
 use crate::compute::gpu::{DeviceReal, Gpu, GpuContext};
 use crate::compute::handle::at_contact;
-use crate::compute::{Answer, Blocks, Call, CaseModel, Compute, Energies, Outcome};
+use crate::compute::{Answer, Call, CaseModel, Compute, Energies, Evaluated, TangentBlocks};
 use crate::contact::coulomb::{Friction, Rows};
 use crate::material::{Elasticity, FlowStress, Material};
 use crate::mesh::brick::brick;
@@ -142,24 +142,25 @@ fn call(backend: &mut dyn Compute, displacements: &Displacements, call: fn(Arc<[
 }
 
 /// Internal forces at displacements, one answer a case.
-pub fn forces(backend: &mut dyn Compute, displacements: &Displacements) -> Vec<(Outcome, Vec<f64>)> {
+pub fn forces(backend: &mut dyn Compute, displacements: &Displacements) -> Vec<(Evaluated, Vec<f64>)> {
     let answers = call(backend, displacements, |displacement| Call::Force { displacement });
     let force = |answer| if let Answer::Force { force, outcome } = answer { (outcome, force) } else { panic!("{answer:?}") };
     answers.into_iter().map(force).collect()
 }
 
 /// Their tangents, in f64.
-pub fn tangents(backend: &mut dyn Compute, displacements: &Displacements) -> Vec<(Outcome, Vec<[f64; 9]>)> {
-    let answers = call(backend, displacements, |displacement| Call::Tangent { displacement, blocks: Blocks::Double(Vec::new()) });
+pub fn tangents(backend: &mut dyn Compute, displacements: &Displacements) -> Vec<(Evaluated, Vec<[f64; 9]>)> {
+    let answers =
+        call(backend, displacements, |displacement| Call::Tangent { displacement, blocks: TangentBlocks::Double(Vec::new()) });
     let tangent = |answer| match answer {
-        Answer::Tangent { blocks: Blocks::Double(blocks), outcome } => (outcome, blocks),
+        Answer::Tangent { blocks: TangentBlocks::Double(blocks), outcome } => (outcome, blocks),
         other => panic!("{other:?}"),
     };
     answers.into_iter().map(tangent).collect()
 }
 
 /// Commits them; energies of the cases.
-pub fn commits(backend: &mut dyn Compute, displacements: &Displacements) -> Vec<(Outcome, Energies)> {
+pub fn commits(backend: &mut dyn Compute, displacements: &Displacements) -> Vec<(Evaluated, Energies)> {
     let answers = call(backend, displacements, |displacement| Call::Commit { displacement });
     let commit = |answer| match answer {
         Answer::Commit { energies, outcome } => (outcome, energies),

@@ -1,7 +1,7 @@
 //! The contact conditions of points that are open, stick, slip, or sit on an edge between them,
 //! against the CPU in f64.
 
-use crate::compute::{CaseModel, Outcome};
+use crate::compute::{CaseModel, Evaluated};
 use crate::conformance::batch::{Backend, OnCpu, commits, contacts, difference, displaced, every_mesh, models, random};
 use crate::contact::coulomb::Status;
 use crate::real::Real;
@@ -52,7 +52,7 @@ fn rows_agree_on<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds, models: &
     let (mut ours, mut reference) = (backend.start(models), <OnCpu as Backend<f64>>::start(&OnCpu, models));
     let start = vec![0.0; 3 * models[0].mesh.nodes.len()];
     let committed: Vec<_> = (0..models.len()).map(|c| (c, displaced::<R>(&start, 1e-3, &mut random(80 + c as u64)))).collect();
-    assert!(commits(ours.as_mut(), &committed).iter().all(|(outcome, _)| *outcome == Outcome::Valid));
+    assert!(commits(ours.as_mut(), &committed).iter().all(|(outcome, _)| *outcome == Evaluated::Valid));
     commits(reference.as_mut(), &committed);
     let mut requests: Vec<_> = committed
         .iter()

@@ -2,7 +2,7 @@
 //! against the CPU in f64.
 
 use crate::compute::handle::CaseHandle;
-use crate::compute::{CaseModel, CaseState, Compute, Outcome};
+use crate::compute::{CaseModel, CaseState, Compute, Evaluated};
 use crate::conformance::batch::{
     Backend, OnCpu, commits, couples, difference, displaced, every_mesh, forces, models, random, tangents,
 };
@@ -64,7 +64,7 @@ fn prepare<R: Real, B: Backend<R>>(backend: &B, models: &[CaseModel], kind: (&st
     let start = vec![0.0; 3 * models[0].mesh.nodes.len()];
     let committed: Vec<_> = (0..models.len()).map(|case| (case, displaced::<R>(&start, first, &mut rng))).collect();
     if first > 0.0 {
-        assert!(commits(ours.as_mut(), &committed).iter().all(|(outcome, _)| *outcome == Outcome::Valid));
+        assert!(commits(ours.as_mut(), &committed).iter().all(|(outcome, _)| *outcome == Evaluated::Valid));
         commits(reference.as_mut(), &committed);
     }
     let trials = committed
@@ -114,7 +114,7 @@ fn forces_and_tangents_agree_on<R: Real, B: Backend<R>>(backend: &B, bounds: &Bo
         let (k, l) = (tangents(ours.as_mut(), &trials), tangents(reference.as_mut(), &trials));
         let [below, above] = [-1.0, 1.0].map(|side| tangents(reference.as_mut(), &scaled(&trials, 1.0 + side * bounds.rounding)));
         for case in 0..trials.len() {
-            assert_eq!((f[case].0, g[case].0, k[case].0), (Outcome::Valid, Outcome::Valid, Outcome::Valid), "{}", kind.0);
+            assert_eq!((f[case].0, g[case].0, k[case].0), (Evaluated::Valid, Evaluated::Valid, Evaluated::Valid), "{}", kind.0);
             let force = difference(&f[case].1, &g[case].1);
             let nearest = nearest(&k[case].1, [&l[case].1, &below[case].1, &above[case].1]);
             let tangent = difference(k[case].1.iter().flatten(), nearest.iter().flatten());
@@ -144,7 +144,7 @@ fn commits_and_energies_agree_on<R: Real, B: Backend<R>>(backend: &B, bounds: &B
         let Pair { mut ours, mut reference, trials } = prepare(backend, models, kind, seed);
         let (e, f) = (commits(ours.as_mut(), &trials), commits(reference.as_mut(), &trials));
         for case in 0..trials.len() {
-            assert_eq!((e[case].0, f[case].0), (Outcome::Valid, Outcome::Valid), "{}", kind.0);
+            assert_eq!((e[case].0, f[case].0), (Evaluated::Valid, Evaluated::Valid), "{}", kind.0);
             let (e, f) = (e[case].1, f[case].1);
             let state = distance(&state(&mut ours, case), &state(&mut reference, case));
             let error = [[e.elastic, f.elastic], [e.plastic, f.plastic], [e.max_alpha, f.max_alpha]]
@@ -209,7 +209,7 @@ fn turns_take_forces_along<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds,
         let loaded: Vec<_> = trials.iter().map(|(case, u)| of(*case, u)).collect();
         let (nothing, found) = (forces(virgin.as_mut(), &unloaded), forces(ours.as_mut(), &loaded));
         for (case, (_, f)) in still.iter().enumerate() {
-            assert_eq!((nothing[case].0, found[case].0), (Outcome::Valid, Outcome::Valid), "{angles:?}, case {case}");
+            assert_eq!((nothing[case].0, found[case].0), (Evaluated::Valid, Evaluated::Valid), "{angles:?}, case {case}");
             let scale = f.iter().fold(0.0f64, |m, f| m.max(f.abs()));
             let most = nothing[case].1.iter().fold(0.0f64, |m, f| m.max(f.abs()));
             let rounding = rounding::<R>(&models[case].mesh, &unloaded[case].1);
@@ -281,7 +281,7 @@ pub fn bad_displacements_are_refused<R: Real, B: Backend<R>>(backend: &B, _: &Bo
     let (k, c) = (tangents(ours.as_mut(), &bad), commits(ours.as_mut(), &bad));
     for case in 0..bad.len() {
         let refused = case % 2 == 1;
-        assert_eq!(f[case].0 == Outcome::Valid, !refused, "case {case}");
+        assert_eq!(f[case].0 == Evaluated::Valid, !refused, "case {case}");
         assert_eq!([f[case].0, k[case].0, c[case].0], [g[case].0; 3], "case {case}");
         if !refused {
             assert!(f[case].1 == good[case].1, "case {case}");
@@ -321,7 +321,7 @@ fn two_bodies_answer_on<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds, ow
             (forces(backend, &part), tangents(backend, &part), commits(backend, &part))
         });
         for case in 0..both.len() {
-            assert_eq!([f[case].0, k[case].0, e[case].0], [Outcome::Valid; 3], "case {case}");
+            assert_eq!([f[case].0, k[case].0, e[case].0], [Evaluated::Valid; 3], "case {case}");
             assert!(difference(&f[case].1, &g[case].1) <= bounds.force, "case {case}: force");
             let nearest = nearest(&k[case].1, [&l[case].1, &below[case].1, &above[case].1]);
             let tangent = difference(k[case].1.as_flattened(), nearest.as_flattened());

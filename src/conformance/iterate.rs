@@ -8,17 +8,20 @@ use crate::compute::gpu::{Gpu, GpuContext};
 use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::{Ask, Begin, Correct, Corrected, From, Keeps, Plate, Reading, Reply, Request};
 use crate::compute::linear::Ended;
-use crate::compute::{Answer, Call, CaseModel, Compute, Fault, Outcome};
+use crate::compute::{Answer, Call, CaseModel, Compute, Evaluated, Fault};
 use crate::contact::coulomb::{Friction, Status};
 use crate::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
 use crate::material::{Elasticity, FlowStress, Material};
 use crate::mesh::Mesh;
+use crate::solver::boundary::Boundary;
 use crate::solver::contact_rows::apply_contact;
 use crate::solver::iterate::SetOut;
 use crate::solver::newton::Newton;
+use crate::solver::opponent::plane::Plane;
 use crate::solver::phases::PhaseTimes;
 use crate::solver::pose::Pose;
-use crate::solver::system::{Boundary, Trial, fixed_unknowns, plate_functional, right_hand_side};
+use crate::solver::system::{fixed_unknowns, plate_functional, right_hand_side};
+use crate::solver::trial::Trial;
 use crate::solver::{Control, Settings, StepOutcome};
 use std::sync::Arc;
 
@@ -127,8 +130,8 @@ fn on_host(pressed: &mut Pressed, case: usize, u: &[f64], h: f64, control: &Cont
     trial.u.copy_from_slice(u);
     trial.h = h;
     let mut handle = CaseHandle { backend: &mut pressed.cpu, case };
-    let outcome = trial.evaluate(&mut handle, &boundary, control, &mut PhaseTimes::default()).unwrap();
-    assert_eq!(outcome, Outcome::Valid);
+    let outcome = trial.evaluate(&mut handle, &boundary, &Plane, control, &mut PhaseTimes::default()).unwrap();
+    assert_eq!(outcome, Evaluated::Valid);
     (trial, boundary)
 }
 
@@ -169,7 +172,7 @@ fn a_trial_reads_so_on(mut pressed: Pressed) {
                 near("force scale", tried.force_scale, trial.force_scale, trial.force_scale);
                 near("plate force", tried.plate_force, trial.plate_force, trial.force_scale);
                 near("tangential", tried.tangential, trial.tangential_residual(), trial.merit);
-                near("normal force", tried.normal_force, trial.contact_force(&mesh, &boundary)[2], trial.force_scale);
+                near("normal force", tried.normal_force, trial.contact_force(&mesh, &boundary, &Plane)[2], trial.force_scale);
                 let free = || trial.residual.iter().zip(&correction).zip(&fixed).filter(|(_, fixed)| !**fixed);
                 let (slope, size) = free().fold((0.0, 0.0), |(s, t), ((r, d), _)| (s + r * d, t + (r * d).abs()));
                 near("slope", tried.slope, slope, size);
@@ -186,7 +189,7 @@ fn a_trial_reads_so_on(mut pressed: Pressed) {
             ask(&mut pressed.gpu, &[(case, false, plate(&control), Ask::Give(far))]);
             let tried = reading(&ask(&mut pressed.gpu, &[(case, false, plate(&control), Ask::Try(1.0, 0.0))])[0]);
             assert!(
-                matches!(tried.outcome, Outcome::Invalid(Fault::Inverted { .. })) && tried.merit == f64::INFINITY,
+                matches!(tried.outcome, Evaluated::Invalid(Fault::Inverted { .. })) && tried.merit == f64::INFINITY,
                 "{tried:?}"
             );
         }
@@ -221,7 +224,7 @@ fn a_correction_solves_it_on(mut pressed: Pressed) {
             let begun = reading(&ask(&mut pressed.gpu, &[(case, false, plate(&control), begin(&mesh))])[0]);
             let asked = correct(1e-4, begun.plate_force);
             let found = corrected(&ask(&mut pressed.gpu, &[(case, false, plate(&control), asked)])[0]);
-            assert_eq!((found.tangent, found.report.ended), (Outcome::Valid, Ended::Converged));
+            assert_eq!((found.tangent, found.report.ended), (Evaluated::Valid, Ended::Converged));
             // The whole correction becomes the iterate, so that it can be read.
             let brought = ask(&mut pressed.gpu, &[(case, true, plate(&control), Ask::Bring)]).remove(0);
             let Reply::Vectors(vectors) = brought else { panic!("{brought:?}") };

@@ -2,12 +2,12 @@
 //! and leaves on every level are the CPU's, which are in f32 too; the vectors of FGMRES, which the
 //! CPU makes in another way, are held to the equations that define them, in f64.
 
-use super::linear::{Numbers, System, mesh, models, own_numbers, solve, system, whole_mesh};
+use super::linear::{Numbers, TestSystem, down_to_one_element, mesh, models, own_numbers, solve, system, whole_mesh};
 use crate::compute::CaseModel;
 use crate::compute::gpu::linear::inspect::OnLevel;
 use crate::compute::gpu::{Gpu, GpuContext};
 use crate::linalg::{BlockMatrix, Hierarchy};
-use crate::mesh::{Mesh, Prolongation, SphereSpec, brick, sphere_mesh, whole};
+use crate::mesh::{Mesh, SphereSpec, sphere_mesh, whole};
 use std::sync::Arc;
 
 /// Of the largest number of an array.
@@ -31,34 +31,6 @@ fn meshes() -> [Arc<Mesh>; 6] {
     let [a, b, c, d] = halves;
     let [e, f] = wholes;
     [a, b, c, d, e, f].map(Arc::new)
-}
-
-/// A box whose levels are halved down to a single element.
-pub(super) fn down_to_one_element() -> Arc<Mesh> {
-    let mut mesh = brick(8, 8, 8, [0.2; 3]).unwrap();
-    mesh.hierarchy = [8, 4, 2].map(halved).to_vec();
-    assert_eq!(mesh.hierarchy[2].coarse_nodes, 8);
-    Arc::new(mesh)
-}
-
-/// Trilinear interpolation to the nodes of a box of so many cells a side from every second one.
-fn halved(cells: usize) -> Prolongation {
-    let (fine, coarse) = (cells + 1, cells / 2 + 1);
-    let mut p = Prolongation { coarse_nodes: coarse.pow(3), row_start: vec![0], column: vec![], weight: vec![] };
-    for node in 0..fine.pow(3) {
-        let at = [node % fine, node / fine % fine, node / fine.pow(2)];
-        let is_between = at.map(|i| i % 2 == 1);
-        let weight = is_between.iter().filter(|between| **between).fold(1.0, |weight, _| 0.5 * weight);
-        for corner in [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]] {
-            if (0..3).all(|axis| is_between[axis] || corner[axis] == 0) {
-                let [i, j, k] = [0, 1, 2].map(|axis| at[axis] / 2 + corner[axis]);
-                p.column.push((i + coarse * (j + coarse * k)) as u32);
-                p.weight.push(weight);
-            }
-        }
-        p.row_start.push(p.column.len() as u32);
-    }
-    p
 }
 
 /// The largest difference over the largest number.
@@ -201,7 +173,7 @@ pub fn a_krylov_cycle_obeys_its_equations(context: &Arc<GpuContext>) {
 
 fn the_cycle_of_a_case_obeys_its_equations(context: &Arc<GpuContext>, models: &[CaseModel], case: usize) {
     let system = system(own_numbers, case, models, true);
-    let System { fixed, rhs, matrix, .. } = &system;
+    let TestSystem { fixed, rhs, matrix, .. } = &system;
     let mut gpu = Gpu::<f64>::new(context.clone(), vec![models[case].clone()]).unwrap();
     let (_, report) = solve(&mut gpu, &[(0, &system)], 1e-4).remove(0);
     let cycle = gpu.solver().unwrap().last_cycle(context).unwrap();

@@ -2,17 +2,17 @@
 //! in f64, and how many iterations it takes for that.
 
 use super::batch::{random, tangents};
-use super::kernels::down_to_one_element;
 use crate::compute::cpu::Cpu;
 use crate::compute::gpu::{DeviceReal, Gpu, GpuContext};
 use crate::compute::linear::{self, Ended, Side, SideReport, Solved};
-use crate::compute::{Answer, Call, CaseModel, Compute, Outcome};
+use crate::compute::{Answer, Call, CaseModel, Compute, Evaluated};
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, Status, contact_rows};
 use crate::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
 use crate::material::{Elasticity, FlowStress, Material};
-use crate::mesh::{Mesh, SphereSpec, sphere_mesh, whole};
+use crate::mesh::{Mesh, Prolongation, SphereSpec, brick, sphere_mesh, whole};
+use crate::solver::boundary::Boundary;
 use crate::solver::contact_rows::apply_contact;
-use crate::solver::system::{Boundary, fixed_unknowns, plate_functional};
+use crate::solver::system::{fixed_unknowns, plate_functional};
 use std::sync::Arc;
 
 /// Cases of a batch.
@@ -35,6 +35,34 @@ pub fn meshes() -> [Arc<Mesh>; 4] {
     [half(0), half(1), half(2), whole(&half(0))].map(Arc::new)
 }
 
+/// A box whose levels are halved down to a single element.
+pub(super) fn down_to_one_element() -> Arc<Mesh> {
+    let mut mesh = brick(8, 8, 8, [0.2; 3]).unwrap();
+    mesh.hierarchy = [8, 4, 2].map(halved).to_vec();
+    assert_eq!(mesh.hierarchy[2].coarse_nodes, 8);
+    Arc::new(mesh)
+}
+
+/// Trilinear interpolation to the nodes of a box of so many cells a side from every second one.
+fn halved(cells: usize) -> Prolongation {
+    let (fine, coarse) = (cells + 1, cells / 2 + 1);
+    let mut p = Prolongation { coarse_nodes: coarse.pow(3), row_start: vec![0], column: vec![], weight: vec![] };
+    for node in 0..fine.pow(3) {
+        let at = [node % fine, node / fine % fine, node / fine.pow(2)];
+        let is_between = at.map(|i| i % 2 == 1);
+        let weight = is_between.iter().filter(|between| **between).fold(1.0, |weight, _| 0.5 * weight);
+        for corner in [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]] {
+            if (0..3).all(|axis| is_between[axis] || corner[axis] == 0) {
+                let [i, j, k] = [0, 1, 2].map(|axis| at[axis] / 2 + corner[axis]);
+                p.column.push((i + coarse * (j + coarse * k)) as u32);
+                p.weight.push(weight);
+            }
+        }
+        p.row_start.push(p.column.len() as u32);
+    }
+    p
+}
+
 /// Both halves of a sphere of even elements.
 pub fn whole_mesh() -> Arc<Mesh> {
     let [.., mesh] = meshes();
@@ -54,7 +82,7 @@ pub fn models(mesh: &Arc<Mesh>) -> Vec<CaseModel> {
 }
 
 /// One system, and what is asked of it.
-pub struct System {
+pub struct TestSystem {
     displacement: Vec<f64>,
     rows: Vec<Rows<f64>>,
     /// Unknowns that are prescribed.
@@ -77,7 +105,7 @@ pub fn own_numbers(seed: u64) -> Box<dyn FnMut(f64, f64) -> f64> {
 
 /// Points that stick, slide and are open by chance; every other free unknown has a random force,
 /// every fixed one a random displacement.
-pub fn system(numbers: Numbers, case: usize, models: &[CaseModel], masked: bool) -> System {
+pub fn system(numbers: Numbers, case: usize, models: &[CaseModel], masked: bool) -> TestSystem {
     let mesh = &models[case].mesh;
     let mut between = numbers(40 + case as u64);
     let n = 3 * mesh.nodes.len();
@@ -118,10 +146,10 @@ pub fn system(numbers: Numbers, case: usize, models: &[CaseModel], masked: bool)
     plate_functional(&matrix, &boundary.plate, &mut functional);
     apply_contact(&mut matrix, mesh, &rows);
     assert!([Status::Open, Status::Stick, Status::Slip].iter().all(|status| rows.iter().any(|row| row.status == *status)));
-    System { displacement, rows, fixed, rhs, matrix, functional }
+    TestSystem { displacement, rows, fixed, rhs, matrix, functional }
 }
 
-impl System {
+impl TestSystem {
     /// |b - A x| over the free unknowns over the same at x = 0, in f64; fixed unknowns have to be
     /// right.
     pub fn residual(&self, x: &[f64]) -> f64 {
@@ -140,7 +168,7 @@ impl System {
 }
 
 /// What is asked of a system: a side of this tolerance from each guess.
-pub fn asked(system: &System, sides: &[(f64, Vec<f64>)], expected: usize, relative_to_guess: bool) -> linear::System {
+pub fn asked(system: &TestSystem, sides: &[(f64, Vec<f64>)], expected: usize, relative_to_guess: bool) -> linear::SolveRequest {
     let side = |(tolerance, guess): &(f64, Vec<f64>)| Side {
         rhs: system.rhs.clone(),
         tolerance: *tolerance,
@@ -148,24 +176,24 @@ pub fn asked(system: &System, sides: &[(f64, Vec<f64>)], expected: usize, relati
         expected,
         guess: guess.clone(),
     };
-    let System { displacement, rows, fixed, .. } = system;
+    let TestSystem { displacement, rows, fixed, .. } = system;
     let (rows, fixed) = (rows.clone(), fixed.clone());
-    linear::System { displacement: displacement.as_slice().into(), rows, fixed, sides: sides.iter().map(side).collect() }
+    linear::SolveRequest { displacement: displacement.as_slice().into(), rows, fixed, sides: sides.iter().map(side).collect() }
 }
 
 /// The answers to systems of cases.
-pub fn solved(backend: &mut dyn Compute, systems: Vec<(usize, linear::System)>) -> Vec<Solved> {
+pub fn solved(backend: &mut dyn Compute, systems: Vec<(usize, linear::SolveRequest)>) -> Vec<Solved> {
     let answers = backend.call(systems.into_iter().map(|(case, system)| (case, Call::Solve(system.into()))).collect()).unwrap();
     answers.into_iter().map(|answer| if let Answer::Solved(solved) = answer { solved } else { panic!("{answer:?}") }).collect()
 }
 
 /// The solutions of systems of cases, from zero.
-pub fn solve(backend: &mut dyn Compute, systems: &[(usize, &System)], tolerance: f64) -> Vec<(Vec<f64>, SideReport)> {
-    let zeros = |system: &System| vec![0.0; system.rhs.len()];
-    let one = |&(case, system): &(usize, &System)| (case, asked(system, &[(tolerance, zeros(system))], 2, false));
+pub fn solve(backend: &mut dyn Compute, systems: &[(usize, &TestSystem)], tolerance: f64) -> Vec<(Vec<f64>, SideReport)> {
+    let zeros = |system: &TestSystem| vec![0.0; system.rhs.len()];
+    let one = |&(case, system): &(usize, &TestSystem)| (case, asked(system, &[(tolerance, zeros(system))], 2, false));
     let answers = solved(backend, systems.iter().map(one).collect());
     let solution = |mut solved: Solved| {
-        assert_eq!((solved.outcome, solved.solutions.len()), (Outcome::Valid, 1));
+        assert_eq!((solved.outcome, solved.solutions.len()), (Evaluated::Valid, 1));
         let solution = solved.solutions.remove(0);
         (solution.x, solution.report)
     };
@@ -191,8 +219,8 @@ fn meets_tolerances_on<R: DeviceReal>(context: Arc<GpuContext>, numbers: Numbers
     let models = models(mesh);
     let mut gpu = Gpu::<R>::new(context, models.clone()).unwrap();
     for masked in [false, true] {
-        let systems: Vec<System> = (0..CASES).map(|case| system(numbers, case, &models, masked)).collect();
-        let all: Vec<(usize, &System)> = systems.iter().enumerate().collect();
+        let systems: Vec<TestSystem> = (0..CASES).map(|case| system(numbers, case, &models, masked)).collect();
+        let all: Vec<(usize, &TestSystem)> = systems.iter().enumerate().collect();
         for tolerance in [0.1, 1e-2, 1e-3, 1e-5] {
             for (case, (system, (x, report))) in systems.iter().zip(solve(&mut gpu, &all, tolerance)).enumerate() {
                 let mut host = LinearSolver::new(SolverKind::Multigrid, &system.matrix.pattern, &mesh.hierarchy).unwrap();

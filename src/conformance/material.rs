@@ -9,15 +9,15 @@ use crate::real::Real;
 use std::sync::Arc;
 
 /// Who maps the points: arrays are `[case][component][point]`.
-pub trait Backend<R> {
+pub trait PointBackend<R> {
     /// Answers of all points.
     fn map(&self, materials: &[Material<R>], points: usize, relative: &[R], committed: &[R]) -> Answers<R>;
 }
 
 /// The CPU.
-pub struct Cpu;
+pub struct CpuPoints;
 /// A device.
-pub struct Gpu(pub Arc<GpuContext>);
+pub struct GpuPoints(pub Arc<GpuContext>);
 
 /// How far from the reference a backend may be.
 pub struct Bounds {
@@ -34,13 +34,13 @@ impl Bounds {
     pub const F32: Self = Self { agreement: 1e-5, equations: 1e-5 };
 }
 
-impl<R: DeviceReal> Backend<R> for Gpu {
+impl<R: DeviceReal> PointBackend<R> for GpuPoints {
     fn map(&self, materials: &[Material<R>], points: usize, relative: &[R], committed: &[R]) -> Answers<R> {
         return_mapping(&self.0, materials, points, relative, committed).unwrap()
     }
 }
 
-impl<R: Real> Backend<R> for Cpu {
+impl<R: Real> PointBackend<R> for CpuPoints {
     fn map(&self, materials: &[Material<R>], points: usize, relative: &[R], committed: &[R]) -> Answers<R> {
         let cases = materials.len();
         let mut all = Answers {
@@ -196,11 +196,11 @@ fn scales(answer: &[f64; ANSWER], d: &[f64; RELATIVE], material: &Material<f64>)
 }
 
 /// Agreement with the CPU in f64 on seeded random points of every law and kind.
-pub fn agrees_with_the_reference<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
+pub fn agrees_with_the_reference<R: Real, B: PointBackend<R>>(backend: &B, bounds: &Bounds) {
     let reference_materials = materials::<f64>();
     let (relative, committed) = inputs::<R>(&reference_materials, 5);
     let ours = backend.map(&materials::<R>(), POINTS, &relative, &committed);
-    let reference = Cpu.map(&reference_materials, POINTS, &widen(&relative), &widen(&committed));
+    let reference = CpuPoints.map(&reference_materials, POINTS, &widen(&relative), &widen(&committed));
     let (answer, tangent) = (widen(&ours.answer), widen(&ours.tangent));
     let (mut worst, mut yielding) = ((0.0, String::new()), 0);
     for (case, material) in reference_materials.iter().enumerate() {
@@ -239,7 +239,7 @@ pub fn agrees_with_the_reference<R: Real, B: Backend<R>>(backend: &B, bounds: &B
 
 /// Every answer obeys the yield condition, plastic incompressibility, and the signs of
 /// thermodynamics, by itself.
-pub fn obeys_its_equations<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
+pub fn obeys_its_equations<R: Real, B: PointBackend<R>>(backend: &B, bounds: &Bounds) {
     let reference_materials = materials::<f64>();
     let (relative, committed) = inputs::<R>(&reference_materials, 6);
     let ours = backend.map(&materials::<R>(), POINTS, &relative, &committed);
@@ -281,7 +281,7 @@ pub fn obeys_its_equations<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds)
 
 /// No deformation, no answer but zero; and points without an answer say so without touching their
 /// neighbours.
-pub fn reports_what_has_no_answer<R: Real, B: Backend<R>>(backend: &B, _: &Bounds) {
+pub fn reports_what_has_no_answer<R: Real, B: PointBackend<R>>(backend: &B, _: &Bounds) {
     use PointStatus::{Elastic, Inverted, NotFinite};
     let (nan, inf) = (f64::NAN, f64::INFINITY);
     let zero = [0.0; RELATIVE];
@@ -336,7 +336,7 @@ pub fn reports_what_has_no_answer<R: Real, B: Backend<R>>(backend: &B, _: &Bound
 }
 
 /// The same input gives the same bits.
-pub fn is_deterministic<R: Real, B: Backend<R>>(backend: &B, _: &Bounds) {
+pub fn is_deterministic<R: Real, B: PointBackend<R>>(backend: &B, _: &Bounds) {
     let materials = materials::<R>();
     let (relative, committed) = inputs::<R>(&self::materials::<f64>(), 7);
     let first = backend.map(&materials, POINTS, &relative, &committed);
@@ -350,8 +350,8 @@ pub fn is_deterministic<R: Real, B: Backend<R>>(backend: &B, _: &Bounds) {
 
 /// Forty steps of a closed strain cycle, the state handed on by the backend: errors must not pile
 /// up.
-pub fn follows_a_cycle<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
-    let (ours, reference) = (cycle(backend, &materials::<R>()), cycle(&Cpu, &materials::<f64>()));
+pub fn follows_a_cycle<R: Real, B: PointBackend<R>>(backend: &B, bounds: &Bounds) {
+    let (ours, reference) = (cycle(backend, &materials::<R>()), cycle(&CpuPoints, &materials::<f64>()));
     for (case, material) in materials::<f64>().iter().enumerate() {
         let (ours, reference) = (&ours[case], &reference[case]);
         let scale = reference.iter().fold(0.0f64, |m, x| m.max(x.abs()));
@@ -368,7 +368,7 @@ pub fn follows_a_cycle<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
 }
 
 /// b_e_bar - I and alpha after the cycle, for each material.
-fn cycle<R: Real, B: Backend<R>>(backend: &B, materials: &[Material<R>]) -> Vec<[f64; STATE]> {
+fn cycle<R: Real, B: PointBackend<R>>(backend: &B, materials: &[Material<R>]) -> Vec<[f64; STATE]> {
     let cases = materials.len();
     let mut committed = vec![R::ZERO; cases * STATE];
     for step in 0..40 {

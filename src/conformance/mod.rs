@@ -22,7 +22,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use crate::compute::gpu::{GpuContext, Precision};
 
 /// A body for a device.
-type Body = fn(&Arc<GpuContext>);
+type TestBody = fn(&Arc<GpuContext>);
 
 /// What takes long on a software driver; other comparisons have the same kernels.
 const LONG: [&str; 1] = ["two bodies"];
@@ -34,7 +34,7 @@ pub struct Comparison {
     pub name: &'static str,
     /// The precision of the residual's kernels.
     pub precision: Precision,
-    body: Body,
+    body: TestBody,
 }
 
 impl Comparison {
@@ -102,7 +102,7 @@ macro_rules! in_both {
 /// f32.
 pub fn comparisons(has_double: bool) -> Vec<Comparison> {
     let mut all: Vec<Comparison> = Vec::with_capacity(32);
-    in_both!(all, material, material::Gpu:
+    in_both!(all, material, material::GpuPoints:
         "return mapping" agrees_with_the_reference,
         "return mapping: its equations" obeys_its_equations,
         "return mapping: points without an answer" reports_what_has_no_answer,
@@ -122,7 +122,7 @@ pub fn comparisons(has_double: bool) -> Vec<Comparison> {
         "contact rows of what is no number" nan_is_not_swallowed,
     );
     in_both!(all, assembly, batch::OnGpu: "a batch and its cases alone" a_batch_has_the_bits_of_its_cases_alone);
-    let in_double: [(&'static str, Body); 5] = [
+    let in_double: [(&'static str, TestBody); 5] = [
         // The solver's kernels are in f32 beside either residual.
         ("linear systems", |context| linear::meets_tolerances_as_the_cpu_does::<f64>(context, linear::own_numbers)),
         ("linear systems, down to one element", linear::meets_tolerances_down_to_one_element),

@@ -15,7 +15,7 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; i
 /// How a request went.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // their names say what they are
-pub enum Status {
+pub enum HttpStatus {
     Done,
     Bad,
     Forbidden,
@@ -30,7 +30,7 @@ pub enum Status {
     Broken,
 }
 
-impl Status {
+impl HttpStatus {
     /// The number in HTTP.
     pub fn code(self) -> u16 {
         match self {
@@ -69,9 +69,9 @@ impl Status {
 
 /// An answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Answer {
+pub struct HttpAnswer {
     /// How it went.
-    pub status: Status,
+    pub status: HttpStatus,
     /// Its type, as in HTTP.
     pub kind: &'static str,
     /// The name under which a browser is to keep it, where it is a file.
@@ -80,10 +80,10 @@ pub struct Answer {
     pub body: Vec<u8>,
 }
 
-impl Answer {
+impl HttpAnswer {
     /// A text that went well.
     pub fn text(kind: &'static str, body: impl Into<Vec<u8>>) -> Self {
-        Self { status: Status::Done, kind, file: None, body: body.into() }
+        Self { status: HttpStatus::Done, kind, file: None, body: body.into() }
     }
 
     /// JSON.
@@ -92,7 +92,7 @@ impl Answer {
     }
 
     /// Plain words.
-    pub fn plain(status: Status, words: &str) -> Self {
+    pub fn plain(status: HttpStatus, words: &str) -> Self {
         Self { status, ..Self::text("text/plain; charset=utf-8", words) }
     }
 
@@ -116,7 +116,7 @@ impl Answer {
         if let Some(file) = &self.file {
             head += &format!("Content-Disposition: attachment; filename=\"{file}\"\r\n");
         }
-        if self.status == Status::Method {
+        if self.status == HttpStatus::Method {
             head += "Allow: GET, HEAD, POST\r\n";
         }
         head += "\r\n";

@@ -3,9 +3,9 @@
 
 use serde_json::{Value, json};
 
-use super::curves::Curves;
-use super::results::StudyCase;
-use super::simulate::Run;
+use super::curves::LawCurves;
+use super::results::ShownCase;
+use super::simulate::SimulatedRun;
 use crate::analytical::hertz;
 use crate::case::{Case, PictureWidth, WidthUnit};
 use crate::output::plots::axes::{Axes, AxisUnits, Dimension, Shown};
@@ -27,15 +27,15 @@ const WIDTHS: (f64, f64) = (320.0, 620.0);
 #[derive(Clone, Debug, Default)]
 pub struct Overlay<'a> {
     /// A simulation of the same contact.
-    pub run: Option<&'a Run>,
+    pub run: Option<&'a SimulatedRun>,
     /// Cases of a study of the same contact.
-    pub study: Vec<&'a StudyCase>,
+    pub study: Vec<&'a ShownCase>,
     /// The rows of the one of the same depth, with its name.
     pub of_depth: Option<(String, Vec<StepRecord>)>,
 }
 
 /// A curve of a diagram: what it is, where it comes from, and how far it can be trusted.
-struct Curve {
+struct ChartCurve {
     name: &'static str,
     source: String,
     trust: String,
@@ -45,13 +45,13 @@ struct Curve {
 pub struct Drawing {
     picture: Picture,
     title: &'static str,
-    curves: Vec<Curve>,
+    curves: Vec<ChartCurve>,
 }
 
 impl Drawing {
     /// For the page.
     pub fn json(&self) -> Value {
-        let curve = |curve: &Curve| json!({ "name": curve.name, "source": curve.source, "trust": curve.trust });
+        let curve = |curve: &ChartCurve| json!({ "name": curve.name, "source": curve.source, "trust": curve.trust });
         json!({
             "name": self.picture.name,
             "title": self.title,
@@ -76,13 +76,13 @@ pub fn view(case: &Case, axes: &str, width: f64) -> View {
 ///
 /// # Errors
 /// A drawing fails.
-pub fn drawings(curves: &Curves, over: &Overlay<'_>, view: &View) -> Result<Vec<Drawing>, OutputError> {
+pub fn drawings(curves: &LawCurves, over: &Overlay<'_>, view: &View) -> Result<Vec<Drawing>, OutputError> {
     let page = Page { curves, over, view };
     Ok(vec![page.press()?, page.tangential()?, page.normal()?, page.cycle()?])
 }
 
 struct Page<'a> {
-    curves: &'a Curves,
+    curves: &'a LawCurves,
     over: &'a Overlay<'a>,
     view: &'a View,
 }
@@ -90,12 +90,12 @@ struct Page<'a> {
 type Of = fn(&StepRecord) -> f64;
 
 /// Both axes, with their factors.
-struct Scales {
+struct ChartScales {
     x: Shown,
     y: Shown,
 }
 
-impl Scales {
+impl ChartScales {
     fn at(&self, x: f64, y: f64) -> (f64, f64) {
         (x * self.x.factor, y * self.y.factor)
     }
@@ -111,12 +111,12 @@ fn percent([rms, most]: [f64; 2]) -> String {
 
 impl Page<'_> {
     /// A law's curve with the band of its errors, which is as wide as `error`, a force.
-    fn law(&self, scales: &Scales, rows: &[StepRecord], [x, y]: [Of; 2], error: impl Fn(&StepRecord) -> f64) -> Vec<Series> {
+    fn law(&self, scales: &ChartScales, rows: &[StepRecord], [x, y]: [Of; 2], error: impl Fn(&StepRecord) -> f64) -> Vec<Series> {
         let edge = |sign: f64| rows.iter().map(|row| scales.at(x(row), (y(row) + sign * error(row)).max(0.0))).collect();
         vec![Series::band("", BLUE, edge(-1.0), edge(1.0)), Series::solid("law", BLUE, scales.of(rows, x, y))]
     }
 
-    fn law_curve(&self, errors: [f64; 2], what: &str) -> Curve {
+    fn law_curve(&self, errors: [f64; 2], what: &str) -> ChartCurve {
         let (trust, outside) = (&self.curves.trust, &self.curves.out_of_range);
         let list: Vec<String> = outside.iter().map(ToString::to_string).collect();
         let far = if list.is_empty() && !trust.is_known {
@@ -126,20 +126,20 @@ impl Page<'_> {
         } else {
             format!("Outside of what the law was made from ({}): compare it with a simulation", list.join(", "))
         };
-        Curve { name: "law", source: trust.source.clone(), trust: far }
+        ChartCurve { name: "law", source: trust.source.clone(), trust: far }
     }
 
-    fn closed_form(&self, name: &'static str, whose: &str) -> Curve {
+    fn closed_form(&self, name: &'static str, whose: &str) -> ChartCurve {
         let yields = self.curves.first_yield.filter(|first| *first < self.curves.h);
         let trust = match yields {
             Some(first) => format!("This contact yields from h = {} on", tick(first)),
             None => "Exact for a small elastic contact, 1 % off in the force at a/R = 0.1".to_owned(),
         };
-        Curve { name, source: format!("closed form of an elastic contact ({whose})"), trust }
+        ChartCurve { name, source: format!("closed form of an elastic contact ({whose})"), trust }
     }
 
     /// A simulation of this contact along this path, or along one that begins with the same press.
-    fn simulated(&self) -> Option<(&[StepRecord], Curve)> {
+    fn simulated(&self) -> Option<(&[StepRecord], ChartCurve)> {
         let run = self.over.run?;
         let mesh = run.case.mesh.elements_per_contact_radius;
         let error = run.summary.as_ref().and_then(|summary| Some(summary.f_n0_error? / summary.f_n0?));
@@ -148,12 +148,12 @@ impl Page<'_> {
             |error| format!("F_N0 within {:.1} % by its own estimate", 100.0 * error),
         );
         let source = format!("finite elements, {mesh} along the contact radius ({})", run.stage.word());
-        Some((&run.history, Curve { name: "simulation", source, trust: error }))
+        Some((&run.history, ChartCurve { name: "simulation", source, trust: error }))
     }
 
-    fn of_study(&self) -> Option<(&[StepRecord], Curve)> {
+    fn of_study(&self) -> Option<(&[StepRecord], ChartCurve)> {
         let (id, rows) = self.over.of_depth.as_ref()?;
-        let curve = Curve {
+        let curve = ChartCurve {
             name: "study",
             source: format!("finite elements, case {id} of the study"),
             trust: "As accurate as the mesh of the study".to_owned(),
@@ -164,10 +164,10 @@ impl Page<'_> {
     /// Adds marks of a simulation's rows that are left by `which`.
     fn marks(
         &self,
-        scales: &Scales,
+        scales: &ChartScales,
         [x, y]: [Of; 2],
         which: impl Fn(&[StepRecord]) -> &[StepRecord],
-    ) -> (Vec<Series>, Vec<Curve>) {
+    ) -> (Vec<Series>, Vec<ChartCurve>) {
         let (mut series, mut curves) = (Vec::new(), Vec::new());
         for (found, colour, mark) in [(self.simulated(), VERMILION, Mark::Ring), (self.of_study(), PURPLE, Mark::Square)] {
             let Some((rows, curve)) = found else { continue };
@@ -193,7 +193,7 @@ impl Page<'_> {
         let c = self.curves;
         let rows = c.press();
         let most = greatest(rows.iter().map(|row| row.f_n));
-        let scales = Scales { x: self.length("indentation", "h", c.h), y: self.force("normal force", "F_N", most) };
+        let scales = ChartScales { x: self.length("indentation", "h", c.h), y: self.force("normal force", "F_N", most) };
         let hertz: Vec<(f64, f64)> = (0..=POINTS)
             .map(|i| c.h * (i as f64 / POINTS as f64).powi(2))
             .map(|h| scales.at(h, hertz::force(&c.elastic, h)))
@@ -212,7 +212,7 @@ impl Page<'_> {
             if !is_named {
                 let (source, trust) =
                     ("finite elements, cases of the study of this contact", "As accurate as the mesh of the study");
-                curves.push(Curve { name: "study", source: source.to_owned(), trust: trust.to_owned() });
+                curves.push(ChartCurve { name: "study", source: source.to_owned(), trust: trust.to_owned() });
             }
         }
         let top = 1.35 * series_top(&series, &["Hertz"]).max(most * scales.y.factor);
@@ -220,7 +220,11 @@ impl Page<'_> {
             let x = scales.x.factor * first;
             series.push(Series::dashed("first yield", ORANGE, 5.0, vec![(x, 0.0), (x, top)]));
             let source = "closed form (Hertz's contact, Mises' criterion)".to_owned();
-            curves.push(Curve { name: "first yield", source, trust: "Exact for a small contact without friction".to_owned() });
+            curves.push(ChartCurve {
+                name: "first yield",
+                source,
+                trust: "Exact for a small contact without friction".to_owned(),
+            });
         }
         let chart = Chart {
             title: "Normal force of a press".into(),
@@ -242,8 +246,10 @@ impl Page<'_> {
     fn tangential(&self) -> Result<Drawing, OutputError> {
         let (c, rows) = (self.curves, self.curves.slip());
         let (end, peak) = (greatest(rows.iter().map(|row| row.delta_t)), greatest(rows.iter().map(|row| row.f_t)));
-        let scales =
-            Scales { x: self.length("tangential displacement", "δ_T", end), y: self.force("tangential force", "F_T", peak) };
+        let scales = ChartScales {
+            x: self.length("tangential displacement", "δ_T", end),
+            y: self.force("tangential force", "F_T", peak),
+        };
         let mindlin = c.mindlin();
         let closed = (0..=POINTS).map(|i| end * (i as f64 / POINTS as f64).powi(2)).map(|d| scales.at(d, mindlin.force(d)));
         let error = BAND * c.trust.tangential[0] * peak;
@@ -273,7 +279,7 @@ impl Page<'_> {
         let (c, rows) = (self.curves, self.curves.slip());
         let (end, most) = (greatest(rows.iter().map(|row| row.delta_t)), greatest(rows.iter().map(|row| row.f_n)));
         let scales =
-            Scales { x: self.length("tangential displacement", "δ_T", end), y: self.force("normal force", "F_N", most) };
+            ChartScales { x: self.length("tangential displacement", "δ_T", end), y: self.force("normal force", "F_N", most) };
         let elastic = c.mindlin().normal_force;
         let error = BAND * c.trust.normal[0].hypot(c.trust.press[0]) * most;
         let mut series = self.law(&scales, rows, [|row| row.delta_t, |row| row.f_n], |_| error);
@@ -296,7 +302,7 @@ impl Page<'_> {
     }
 
     /// A diagram of a shear: what is off the scale of law and simulation is cut.
-    fn over_shear(&self, title: &str, scales: &Scales, end: f64, most: f64, series: Vec<Series>) -> Chart {
+    fn over_shear(&self, title: &str, scales: &ChartScales, end: f64, most: f64, series: Vec<Series>) -> Chart {
         let top = series_top(&series, &["Hertz", "Mindlin"]).max(most * scales.y.factor);
         Chart {
             title: title.into(),
@@ -313,7 +319,7 @@ impl Page<'_> {
         let from = rows.iter().position(|row| row.delta_t != 0.0).map_or(0, |at| at.saturating_sub(1));
         let rows = &rows[from..];
         let all: Of = |row| row.delta_t;
-        let scales = Scales {
+        let scales = ChartScales {
             x: self.length("tangential displacement", "δ_T", greatest(rows.iter().map(all))),
             y: self.force("force", "F", greatest(rows.iter().flat_map(|row| [row.f_n, row.f_t]))),
         };
@@ -322,7 +328,7 @@ impl Page<'_> {
             Series::dashed("F_N, law", GREEN, 7.0, scales.of(rows, all, |row| row.f_n)),
             Series::solid("F_T, law", BLUE, f_t).directed(),
         ];
-        let update = Curve {
+        let update = ChartCurve {
             name: "law",
             source: "the update that an engine calls, driven along the path".to_owned(),
             trust: "Of a whole cycle no error is known for each contact; docs/law-errors.md has those of random paths".to_owned(),
@@ -357,7 +363,7 @@ impl Page<'_> {
         title: &'static str,
         chart: Chart,
         words: String,
-        curves: Vec<Curve>,
+        curves: Vec<ChartCurve>,
     ) -> Result<Drawing, OutputError> {
         let size = self.view.sheet.chart(SIZE);
         let picture = Picture::draw(name, words, size, |root| draw_chart(root, &chart))?;

@@ -16,7 +16,7 @@ use super::trust::Trust;
 
 /// A law at one case, in the case's units.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Curves {
+pub struct LawCurves {
     /// The case.
     pub case: Case,
     /// The greatest indentation.
@@ -70,7 +70,7 @@ fn nearest_to_plastic(case: &Case, h: f64, a: f64, f_n0: f64) -> Result<(Variabl
     Ok(if other.0.lambda / other.1 > sphere.0.lambda / sphere.1 { other } else { sphere })
 }
 
-impl Curves {
+impl LawCurves {
     /// Follows the paths with parameters that belong to the case.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::curves::Curves;
+use super::curves::LawCurves;
 use super::tar;
 use crate::case::Case;
 use crate::law::export::{Engine, ExportedFile, Language, Start, law_source, start_files};
@@ -10,7 +10,7 @@ use crate::law::{LawError, LawFile};
 use crate::output::{StepRecord, decimal};
 
 /// A file to be kept: its name, its type in HTTP, its bytes.
-pub type Kept = (String, &'static str, Vec<u8>);
+pub type KeptExport = (String, &'static str, Vec<u8>);
 
 const TEXT: &str = "text/plain; charset=utf-8";
 const TAR: &str = "application/x-tar";
@@ -33,8 +33,8 @@ pub fn file(
     name: &str,
     law: &LawFile,
     case: &Case,
-    curves: impl FnOnce() -> Result<Curves, LawError>,
-) -> Result<Option<Kept>, LawError> {
+    curves: impl FnOnce() -> Result<LawCurves, LawError>,
+) -> Result<Option<KeptExport>, LawError> {
     let text = |content: String| (name.to_owned(), TEXT, content.into_bytes());
     Ok(Some(match name {
         "case.toml" => text(case.to_toml()),
@@ -67,7 +67,7 @@ fn start(law: &LawFile, engine: Engine, case: &Case, folder: &str) -> Result<Vec
 }
 
 /// Both paths, with the columns that `law predict` prints.
-fn csv(curves: &Curves) -> String {
+fn csv(curves: &LawCurves) -> String {
     let mut text = String::from("path,segment,h,delta_T,F_N,F_T\n");
     let mut add = |path: &str, rows: &[StepRecord]| {
         for row in rows {

@@ -261,7 +261,7 @@ impl Form {
     /// # Errors
     /// Every field that cannot be taken.
     pub fn case(&self, base: &Case) -> Result<Case, Vec<Mistake>> {
-        let mut reading = Reading { form: self, mistakes: Vec::new() };
+        let mut reading = FormReading { form: self, mistakes: Vec::new() };
         let table = reading.table(base);
         if !reading.mistakes.is_empty() {
             return Err(reading.mistakes);
@@ -301,12 +301,12 @@ fn of_case(error: &CaseError, path: &str) -> Mistake {
 }
 
 /// Fields on their way to the tables of a case file.
-struct Reading<'a> {
+struct FormReading<'a> {
     form: &'a Form,
     mistakes: Vec<Mistake>,
 }
 
-impl Reading<'_> {
+impl FormReading<'_> {
     fn wrong(&mut self, field: &str, what: &str) {
         self.mistakes.push(Mistake { field: field.to_owned(), what: what.to_owned() });
     }

@@ -26,13 +26,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use serde_json::{Value, json};
 
-use self::answer::{Answer, Status};
+use self::answer::{HttpAnswer, HttpStatus};
 use self::charts::Overlay;
-use self::curves::{Curves, to_slip};
+use self::curves::{LawCurves, to_slip};
 use self::form::Form;
-use self::request::{HttpRequest, Method};
+use self::request::{HttpMethod, HttpRequest};
 use self::results::same_contact;
-use self::simulate::{Simulator, Stage};
+use self::simulate::{PageSimulator, Stage};
 use crate::case::Case;
 use crate::contact_law::ContactParameters;
 use crate::law::{LawError, LawFile};
@@ -40,7 +40,7 @@ use crate::output::plots::plot_slip_frame;
 
 pub use results::{StudyCases, read_run};
 pub use serve::{End, Server, Service};
-pub use simulate::{Resources, Run};
+pub use simulate::{Resources, SimulatedRun};
 
 /// Contacts whose parameters are kept: a slider that goes back, and what follows one change of a
 /// page (curves, exports), find theirs.
@@ -55,8 +55,8 @@ pub struct Explorer {
     base: Case,
     study: StudyCases,
     /// Results that were given with the case.
-    earlier: Option<Run>,
-    simulator: Simulator,
+    earlier: Option<SimulatedRun>,
+    simulator: PageSimulator,
     place: Resources,
     contacts: Mutex<Vec<(Case, Arc<ContactParameters>)>>,
     /// Where to say that a simulation was started.
@@ -72,7 +72,7 @@ pub struct Beginning {
     /// A study whose cases lie over the law.
     pub study: StudyCases,
     /// A run that lies over the law.
-    pub earlier: Option<Run>,
+    pub earlier: Option<SimulatedRun>,
     /// Where simulations compute.
     pub place: Resources,
     /// Told of what the user of the terminal should know.
@@ -94,7 +94,7 @@ impl Explorer {
     /// A page that has answered nothing yet.
     pub fn new(beginning: Beginning) -> Self {
         let Beginning { law, base, study, earlier, place, tell } = beginning;
-        Self { law, base, study, earlier, simulator: Simulator::default(), place, contacts: Mutex::default(), tell }
+        Self { law, base, study, earlier, simulator: PageSimulator::default(), place, contacts: Mutex::default(), tell }
     }
 
     /// Ends a simulation that runs; whether one did.
@@ -103,7 +103,7 @@ impl Explorer {
     }
 
     /// The simulation that the page has, its own or the one that it was opened with.
-    fn run(&self) -> Option<Run> {
+    fn run(&self) -> Option<SimulatedRun> {
         self.simulator.run().or_else(|| self.earlier.clone())
     }
 
@@ -123,9 +123,9 @@ impl Explorer {
         Ok(found)
     }
 
-    fn curves(&self, case: Case) -> Result<Curves, LawError> {
+    fn curves(&self, case: Case) -> Result<LawCurves, LawError> {
         let parameters = self.parameters(&case)?;
-        Curves::new(&self.law, case, &parameters)
+        LawCurves::new(&self.law, case, &parameters)
     }
 
     /// The answer to the fields of a page.
@@ -143,13 +143,13 @@ impl Explorer {
         let run = self.run();
         let curves = self.curves(case)?;
         let case = &curves.case;
-        let is_this = |run: &&Run| same_contact(&run.case, case) && run.case.greatest_indentation() == curves.h;
+        let is_this = |run: &&SimulatedRun| same_contact(&run.case, case) && run.case.greatest_indentation() == curves.h;
         let shown = run.as_ref().filter(is_this);
         let study = self.study.of_contact(case);
         let of_depth = self.study.of_depth(case).map(|one| (one.id.clone(), one.history()));
         let drawn = charts::drawings(&curves, &Overlay { run: shown, study, of_depth }, &view)?;
         // What a part of a path has would be taken for the whole, and another path for the law's.
-        let is_whole = |run: &&Run| run.stage == Stage::Done && run.case.path.starts_with(&to_slip(curves.h));
+        let is_whole = |run: &&SimulatedRun| run.stage == Stage::Done && run.case.path.starts_with(&to_slip(curves.h));
         let summary = shown.filter(is_whole).and_then(|run| run.summary.as_ref());
         let warnings: Vec<String> = curves.out_of_range.iter().map(ToString::to_string).collect();
         Ok(json!({
@@ -164,18 +164,18 @@ impl Explorer {
         }))
     }
 
-    fn export(&self, name: &str, form: &Form) -> Answer {
+    fn export(&self, name: &str, form: &Form) -> HttpAnswer {
         let case = match form.case(&self.base) {
             Ok(case) => case,
             Err(mistakes) => {
                 let list: Vec<String> = mistakes.iter().map(|mistake| format!("{}: {}\n", mistake.field, mistake.what)).collect();
-                return Answer::plain(Status::Bad, &format!("The fields make no case:\n{}", list.concat()));
+                return HttpAnswer::plain(HttpStatus::Bad, &format!("The fields make no case:\n{}", list.concat()));
             }
         };
         match export::file(name, &self.law, &case, || self.curves(case.clone())) {
-            Ok(Some((name, kind, body))) => Answer::file(name, kind, body),
+            Ok(Some((name, kind, body))) => HttpAnswer::file(name, kind, body),
             Ok(None) => not_found(),
-            Err(error) => Answer::plain(Status::Bad, &format!("{error}\n")),
+            Err(error) => HttpAnswer::plain(HttpStatus::Bad, &format!("{error}\n")),
         }
     }
 
@@ -193,58 +193,59 @@ impl Explorer {
         })
     }
 
-    fn simulate(&self, form: &Form, query: &str) -> Answer {
+    fn simulate(&self, form: &Form, query: &str) -> HttpAnswer {
         match form.case(&self.base) {
-            Err(_) => Answer::plain(Status::Bad, "The fields make no case; the page says what is wrong.\n"),
+            Err(_) => HttpAnswer::plain(HttpStatus::Bad, "The fields make no case; the page says what is wrong.\n"),
             Ok(case) => match self.simulator.start(case, query.to_owned(), self.place) {
                 Ok(()) => {
                     (self.tell)("a simulation was started from the page");
-                    Answer::json(&self.simulation())
+                    HttpAnswer::json(&self.simulation())
                 }
-                Err(why) => Answer::plain(Status::Conflict, &format!("{why}\n")),
+                Err(why) => HttpAnswer::plain(HttpStatus::Conflict, &format!("{why}\n")),
             },
         }
     }
 
     /// A map of the contact at one step of the simulation.
-    fn frame(&self, form: &Form) -> Answer {
+    fn frame(&self, form: &Form) -> HttpAnswer {
         let frame = form.get("frame").parse::<usize>().ok();
         let found = self.run().zip(frame).filter(|(run, frame)| *frame < run.frames.len());
         let Some((run, frame)) = found else { return not_found() };
         let view = charts::view(&run.case, form.get("axes"), form.get("width").parse().unwrap_or(f64::INFINITY));
         match plot_slip_frame(&run.frames, frame, &view) {
-            Ok(picture) => Answer::json(&json!({ "svg": picture.svg, "words": picture.caption })),
-            Err(error) => Answer::plain(Status::Broken, &format!("{error}\n")),
+            Ok(picture) => HttpAnswer::json(&json!({ "svg": picture.svg, "words": picture.caption })),
+            Err(error) => HttpAnswer::plain(HttpStatus::Broken, &format!("{error}\n")),
         }
     }
 }
 
-fn not_found() -> Answer {
-    Answer::plain(Status::NotFound, "asperity explore: there is nothing of this name.\n")
+fn not_found() -> HttpAnswer {
+    HttpAnswer::plain(HttpStatus::NotFound, "asperity explore: there is nothing of this name.\n")
 }
 
 impl Service for Explorer {
-    fn answer(&self, request: &HttpRequest) -> Answer {
+    fn answer(&self, request: &HttpRequest) -> HttpAnswer {
         let form = match Form::with(&self.base, &request.query) {
             Ok(form) => form,
-            Err(why) => return Answer::plain(Status::Bad, &format!("asperity explore: {why}.\n")),
+            Err(why) => return HttpAnswer::plain(HttpStatus::Bad, &format!("asperity explore: {why}.\n")),
         };
         match (request.method, request.path.as_str()) {
-            (Method::Post, "simulate") => self.simulate(&form, &request.query),
-            (Method::Post, "cancel") => {
+            (HttpMethod::Post, "simulate") => self.simulate(&form, &request.query),
+            (HttpMethod::Post, "cancel") => {
                 self.simulator.cancel();
-                Answer::json(&self.simulation())
+                HttpAnswer::json(&self.simulation())
             }
-            (Method::Post, _) | (_, "simulate" | "cancel") => {
-                Answer::plain(Status::Method, "asperity explore: POST starts and cancels simulations, and nothing else does.\n")
-            }
-            (_, "") => Answer::text("text/html; charset=utf-8", page::html(&form, &self.base, &self.study, &self.law)),
-            (_, "page.css") => Answer::text("text/css; charset=utf-8", page::STYLE),
-            (_, "page.js") => Answer::text("text/javascript; charset=utf-8", page::SCRIPT),
-            (_, "curves") => {
-                Answer::json(&self.told(&form).unwrap_or_else(|error| json!({ "mistakes": [], "problem": error.to_string() })))
-            }
-            (_, "simulation") => Answer::json(&self.simulation()),
+            (HttpMethod::Post, _) | (_, "simulate" | "cancel") => HttpAnswer::plain(
+                HttpStatus::Method,
+                "asperity explore: POST starts and cancels simulations, and nothing else does.\n",
+            ),
+            (_, "") => HttpAnswer::text("text/html; charset=utf-8", page::html(&form, &self.base, &self.study, &self.law)),
+            (_, "page.css") => HttpAnswer::text("text/css; charset=utf-8", page::STYLE),
+            (_, "page.js") => HttpAnswer::text("text/javascript; charset=utf-8", page::SCRIPT),
+            (_, "curves") => HttpAnswer::json(
+                &self.told(&form).unwrap_or_else(|error| json!({ "mistakes": [], "problem": error.to_string() })),
+            ),
+            (_, "simulation") => HttpAnswer::json(&self.simulation()),
             (_, "frame") => self.frame(&form),
             (_, path) => match path.strip_prefix("export/") {
                 Some(name) => self.export(name, &form),

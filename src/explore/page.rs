@@ -46,7 +46,7 @@ impl Slider {
 }
 
 /// A field with a slider.
-struct Field<'a> {
+struct SliderField<'a> {
     /// Its name in the query.
     name: &'a str,
     /// Its name among the elements of the page.
@@ -58,7 +58,7 @@ struct Field<'a> {
     slider: Slider,
 }
 
-impl Field<'_> {
+impl SliderField<'_> {
     fn html(&self) -> String {
         let Self { name, id, label, symbol, unit, value, slider: Slider { from, to, logarithmic, times } } = self;
         let (label, value, unit) = (escape(*label), escape(*value), escape(*unit));
@@ -80,7 +80,8 @@ pub fn html(form: &Form, base: &Case, study: &StudyCases, law: &LawFile) -> Stri
     let unit = |label: &Option<String>| label.clone().unwrap_or_default();
     let (length, stress) = (unit(&base.units.length), unit(&base.units.stress));
     let field = |name: &str, label: &str, symbol: &str, unit: &str, slider: Slider| {
-        Field { name, id: format!("f-{}", name.replace('.', "-")), label, symbol, unit, value: form.get(name), slider }.html()
+        SliderField { name, id: format!("f-{}", name.replace('.', "-")), label, symbol, unit, value: form.get(name), slider }
+            .html()
     };
     let radius = base.sphere.radius;
     let law_is = match law {
@@ -178,7 +179,7 @@ fn material(form: &Form, base: &Case, prefix: &'static str, stress: &str) -> Str
     let e = base.material.youngs_modulus;
     let plain = |name: &str, label, symbol, unit, slider| {
         let (own, value) = (format!("{prefix}{name}"), value(name));
-        Field { name: &own, id: format!("f-{which}{name}"), label, symbol, unit, value: &value, slider }.html()
+        SliderField { name: &own, id: format!("f-{which}{name}"), label, symbol, unit, value: &value, slider }.html()
     };
     let mut text = plain("youngs_modulus", "Young's modulus", "E", stress, Slider::factors(0.01 * e, 100.0 * e));
     text += &plain("poissons_ratio", "Poisson's ratio", "ν", "", Slider::even(0.0, 0.49));
@@ -207,7 +208,7 @@ fn material(form: &Form, base: &Case, prefix: &'static str, stress: &str) -> Str
             let is_stress = law.parameters().iter().any(|parameter| parameter.key == key && parameter.is_stress);
             let unit = if is_stress { stress } else { "" };
             let slider = slider_of(law, key, modulus, is_stress);
-            text += &Field { name: &name, id, label: &label, symbol: "", unit, value: &value, slider }.html();
+            text += &SliderField { name: &name, id, label: &label, symbol: "", unit, value: &value, slider }.html();
         }
         text += "</div>\n";
     }

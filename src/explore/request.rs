@@ -10,7 +10,7 @@ use std::io::Read;
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
-use super::answer::{Answer, Status};
+use super::answer::{HttpAnswer, HttpStatus};
 
 /// Longest head of a request, bytes; browsers send some 700 without the query.
 const LONGEST_HEAD: usize = 64 * 1024;
@@ -26,7 +26,7 @@ const SILENCE: Duration = Duration::from_secs(1);
 
 /// How a request is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub enum HttpMethod {
     /// Asks, and changes nothing.
     Get,
     /// The same without the body of the answer.
@@ -39,7 +39,7 @@ pub enum Method {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HttpRequest {
     /// How it is meant.
-    pub method: Method,
+    pub method: HttpMethod,
     /// The path below the token, without a slash at the start: empty for the page itself.
     pub path: String,
     /// What stands after the question mark, as it came.
@@ -72,12 +72,12 @@ impl Gate {
     }
 
     /// Reads a request from a connection and judges it; `None` where nobody asks anything.
-    pub fn receive(&self, stream: &mut TcpStream) -> Option<Result<HttpRequest, Answer>> {
+    pub fn receive(&self, stream: &mut TcpStream) -> Option<Result<HttpRequest, HttpAnswer>> {
         match read_head(stream) {
-            Head::Nothing => None,
-            Head::TooSlow => Some(Err(refused(Status::Timeout, "the request was not complete after 5 seconds"))),
-            Head::TooLong => Some(Err(refused(Status::HeadTooLong, &longer("head of the request", LONGEST_HEAD)))),
-            Head::Whole(bytes) => Some(self.judge(&bytes)),
+            RequestHead::Nothing => None,
+            RequestHead::TooSlow => Some(Err(refused(HttpStatus::Timeout, "the request was not complete after 5 seconds"))),
+            RequestHead::TooLong => Some(Err(refused(HttpStatus::HeadTooLong, &longer("head of the request", LONGEST_HEAD)))),
+            RequestHead::Whole(bytes) => Some(self.judge(&bytes)),
         }
     }
 
@@ -85,61 +85,61 @@ impl Gate {
     ///
     /// # Errors
     /// The answer that says what is wrong.
-    pub fn judge(&self, head: &[u8]) -> Result<HttpRequest, Answer> {
+    pub fn judge(&self, head: &[u8]) -> Result<HttpRequest, HttpAnswer> {
         let mut headers = [httparse::EMPTY_HEADER; MOST_HEADERS];
         let mut parsed = httparse::Request::new(&mut headers);
         match parsed.parse(head) {
             Ok(httparse::Status::Complete(_)) => {}
-            Ok(httparse::Status::Partial) => return Err(refused(Status::Bad, "the request ends in its head")),
-            Err(error) => return Err(refused(Status::Bad, &format!("this is no HTTP request: {error}"))),
+            Ok(httparse::Status::Partial) => return Err(refused(HttpStatus::Bad, "the request ends in its head")),
+            Err(error) => return Err(refused(HttpStatus::Bad, &format!("this is no HTTP request: {error}"))),
         }
-        let header = |name: &str| -> Result<Option<&str>, Answer> {
+        let header = |name: &str| -> Result<Option<&str>, HttpAnswer> {
             let mut found = parsed.headers.iter().filter(|header| header.name.eq_ignore_ascii_case(name));
             let Some(first) = found.next() else { return Ok(None) };
             let text = std::str::from_utf8(first.value).ok().filter(|_| found.next().is_none());
-            text.map(Some).ok_or_else(|| refused(Status::Bad, &format!("the header {name} is no text, or is there twice")))
+            text.map(Some).ok_or_else(|| refused(HttpStatus::Bad, &format!("the header {name} is no text, or is there twice")))
         };
         if !header("host")?.is_some_and(|host| self.names().iter().any(|name| name.eq_ignore_ascii_case(host))) {
             return Err(refused(
-                Status::Misdirected,
+                HttpStatus::Misdirected,
                 "this server is called 127.0.0.1 or localhost, with its port, and by no other name",
             ));
         }
         let origin = header("origin")?;
         if origin.is_some_and(|origin| !self.names().iter().any(|name| origin == format!("http://{name}"))) {
-            return Err(refused(Status::Forbidden, "the request comes from a page of another origin"));
+            return Err(refused(HttpStatus::Forbidden, "the request comes from a page of another origin"));
         }
         let method = match parsed.method {
-            Some("GET") => Method::Get,
-            Some("HEAD") => Method::Head,
+            Some("GET") => HttpMethod::Get,
+            Some("HEAD") => HttpMethod::Head,
             Some("POST") if origin.is_none() => {
-                return Err(refused(Status::Forbidden, "a POST has to say from which page it comes"));
+                return Err(refused(HttpStatus::Forbidden, "a POST has to say from which page it comes"));
             }
-            Some("POST") => Method::Post,
-            _ => return Err(refused(Status::Method, "GET, HEAD and POST are answered, nothing else")),
+            Some("POST") => HttpMethod::Post,
+            _ => return Err(refused(HttpStatus::Method, "GET, HEAD and POST are answered, nothing else")),
         };
         let has_body =
             header("content-length")?.is_some_and(|length| length.trim() != "0") || header("transfer-encoding")?.is_some();
         if has_body {
-            return Err(refused(Status::TooLarge, "requests have no body here"));
+            return Err(refused(HttpStatus::TooLarge, "requests have no body here"));
         }
         self.place(method, parsed.path.unwrap_or_default(), header("sec-fetch-site")?, header("sec-fetch-mode")?)
     }
 
     /// Holds the path against the token.
-    fn place(&self, method: Method, target: &str, site: Option<&str>, mode: Option<&str>) -> Result<HttpRequest, Answer> {
+    fn place(&self, method: HttpMethod, target: &str, site: Option<&str>, mode: Option<&str>) -> Result<HttpRequest, HttpAnswer> {
         let (path, query) = target.split_once('?').unwrap_or((target, ""));
         if query.len() > LONGEST_QUERY || path.len() > LONGEST_QUERY {
-            return Err(refused(Status::QueryTooLong, &longer("query", LONGEST_QUERY)));
+            return Err(refused(HttpStatus::QueryTooLong, &longer("query", LONGEST_QUERY)));
         }
         let parts = path.strip_prefix('/').and_then(|path| path.split_once('/'));
         let Some((_, rest)) = parts.filter(|(token, _)| same(token.as_bytes(), self.token.as_bytes())) else {
             let why = "the address has not the token of this server; open the one that `asperity explore` printed";
-            return Err(refused(Status::Forbidden, why));
+            return Err(refused(HttpStatus::Forbidden, why));
         };
         // A picture or a script on a page of somebody else's; a link there may be followed.
         if site == Some("cross-site") && mode != Some("navigate") {
-            return Err(refused(Status::Forbidden, "the request comes from a page of another site"));
+            return Err(refused(HttpStatus::Forbidden, "the request comes from a page of another site"));
         }
         Ok(HttpRequest { method, path: rest.to_owned(), query: query.to_owned() })
     }
@@ -149,8 +149,8 @@ fn longer(what: &str, bytes: usize) -> String {
     format!("the {what} is longer than {} KiB", bytes / 1024)
 }
 
-fn refused(status: Status, why: &str) -> Answer {
-    Answer::plain(status, &format!("asperity explore: {why}.\n"))
+fn refused(status: HttpStatus, why: &str) -> HttpAnswer {
+    HttpAnswer::plain(status, &format!("asperity explore: {why}.\n"))
 }
 
 /// Whether two words are the same, in a time that tells nothing of where they differ.
@@ -159,33 +159,33 @@ fn same(one: &[u8], other: &[u8]) -> bool {
 }
 
 /// What came over a connection.
-enum Head {
+enum RequestHead {
     Nothing,
     TooSlow,
     TooLong,
     Whole(Vec<u8>),
 }
 
-fn read_head(stream: &mut TcpStream) -> Head {
+fn read_head(stream: &mut TcpStream) -> RequestHead {
     let begun = Instant::now();
     let mut head = Vec::new();
     let mut part = [0u8; 2048];
     loop {
         let left = if head.is_empty() { SILENCE } else { PATIENCE }.saturating_sub(begun.elapsed());
         if left.is_zero() || stream.set_read_timeout(Some(left)).is_err() {
-            return if head.is_empty() { Head::Nothing } else { Head::TooSlow };
+            return if head.is_empty() { RequestHead::Nothing } else { RequestHead::TooSlow };
         }
         match stream.read(&mut part) {
-            Ok(0) => return Head::Nothing,
+            Ok(0) => return RequestHead::Nothing,
             Ok(count) => head.extend_from_slice(&part[..count]),
             Err(error) if error.kind() == std::io::ErrorKind::Interrupted => continue,
-            Err(_) => return if head.is_empty() { Head::Nothing } else { Head::TooSlow },
+            Err(_) => return if head.is_empty() { RequestHead::Nothing } else { RequestHead::TooSlow },
         }
         if head.windows(4).any(|end| end == b"\r\n\r\n") {
-            return Head::Whole(head);
+            return RequestHead::Whole(head);
         }
         if head.len() > LONGEST_HEAD {
-            return Head::TooLong;
+            return RequestHead::TooLong;
         }
     }
 }
@@ -208,7 +208,7 @@ mod tests {
     #[test]
     fn who_has_the_address_is_answered() {
         let request = get(&format!("/{TOKEN}/curves?E=1&nu=0.3"), "").unwrap();
-        assert_eq!((request.method, request.path.as_str(), request.query.as_str()), (Method::Get, "curves", "E=1&nu=0.3"));
+        assert_eq!((request.method, request.path.as_str(), request.query.as_str()), (HttpMethod::Get, "curves", "E=1&nu=0.3"));
         assert_eq!(get(&format!("/{TOKEN}/"), "").unwrap().path, "");
         assert!(judged(&format!("GET /{TOKEN}/ HTTP/1.1\nHost: localhost:8123")).is_ok());
     }
@@ -251,7 +251,7 @@ mod tests {
         let post = |more: &str| judged(&format!("POST /{TOKEN}/simulate HTTP/1.1\nHost: 127.0.0.1:8123{more}"));
         assert_eq!(post(""), Err(403));
         assert_eq!(post("\nOrigin: http://evil.example"), Err(403));
-        assert_eq!(post("\nOrigin: http://127.0.0.1:8123\nContent-Length: 0").unwrap().method, Method::Post);
+        assert_eq!(post("\nOrigin: http://127.0.0.1:8123\nContent-Length: 0").unwrap().method, HttpMethod::Post);
         assert_eq!(post("\nOrigin: http://127.0.0.1:8123\nContent-Length: 5"), Err(413));
         assert_eq!(post("\nOrigin: http://127.0.0.1:8123\nTransfer-Encoding: chunked"), Err(413));
     }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::simulate::{Run, Stage};
+use super::simulate::{SimulatedRun, Stage};
 use crate::case::Case;
 use crate::law::LawError;
 use crate::law::study_table::StudyTable;
@@ -19,7 +19,7 @@ const MOST_FRAMES: usize = 80;
 
 /// A case of a study.
 #[derive(Clone, Debug)]
-pub struct StudyCase {
+pub struct ShownCase {
     /// Its name in the study.
     pub id: String,
     /// The case.
@@ -29,7 +29,7 @@ pub struct StudyCase {
     directory: PathBuf,
 }
 
-impl StudyCase {
+impl ShownCase {
     /// Its rows; none where they cannot be read any more.
     pub fn history(&self) -> Vec<StepRecord> {
         read_history(&OutputDirectory::existing(&self.directory).history()).unwrap_or_default()
@@ -42,7 +42,7 @@ pub struct StudyCases {
     /// Where they are.
     pub dir: PathBuf,
     /// The cases.
-    pub cases: Vec<StudyCase>,
+    pub cases: Vec<ShownCase>,
 }
 
 impl StudyCases {
@@ -57,18 +57,18 @@ impl StudyCases {
             let directory = dir.join(&row.directory);
             let out = OutputDirectory::existing(&directory);
             let (case, summary) = (out.load_case()?, Summary::read(&out.summary())?);
-            cases.push(StudyCase { id: row.id.clone(), case, summary, directory });
+            cases.push(ShownCase { id: row.id.clone(), case, summary, directory });
         }
         Ok(Self { dir: dir.to_owned(), cases })
     }
 
     /// The cases of the contact of `case`: whatever their depths and paths.
-    pub fn of_contact(&self, case: &Case) -> Vec<&StudyCase> {
+    pub fn of_contact(&self, case: &Case) -> Vec<&ShownCase> {
         self.cases.iter().filter(|one| same_contact(&one.case, case)).collect()
     }
 
     /// That of its depth too.
-    pub fn of_depth(&self, case: &Case) -> Option<&StudyCase> {
+    pub fn of_depth(&self, case: &Case) -> Option<&ShownCase> {
         let (h, close) = (case.greatest_indentation(), |a: f64, b: f64| (a / b - 1.0).abs() < SAME);
         self.of_contact(case).into_iter().find(|one| one.summary.h0.is_some_and(|h0| close(h0, h)))
     }
@@ -84,7 +84,7 @@ pub fn same_contact(one: &Case, other: &Case) -> bool {
 ///
 /// # Errors
 /// No case there, or results that cannot be read.
-pub fn read_run(dir: &Path) -> Result<Run, LawError> {
+pub fn read_run(dir: &Path) -> Result<SimulatedRun, LawError> {
     let out = OutputDirectory::existing(dir);
     let case = out.load_case()?;
     let history = read_history(&out.history())?;
@@ -98,7 +98,7 @@ pub fn read_run(dir: &Path) -> Result<Run, LawError> {
         }
     }
     let summary = Summary::read(&out.summary()).ok();
-    Ok(Run {
+    Ok(SimulatedRun {
         query: String::new(),
         stage: Stage::Done,
         fraction: 1.0,

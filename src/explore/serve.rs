@@ -8,8 +8,8 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::answer::{Answer, Status};
-use super::request::{Gate, HttpRequest, Method};
+use super::answer::{HttpAnswer, HttpStatus};
+use super::request::{Gate, HttpMethod, HttpRequest};
 
 /// Threads that answer. Browsers open connections beforehand and say nothing on them for a while;
 /// so there are more threads than cores.
@@ -22,7 +22,7 @@ const BEAT: Duration = Duration::from_millis(50);
 /// Answers requests that may be answered.
 pub trait Service: Send + Sync + 'static {
     /// The answer.
-    fn answer(&self, request: &HttpRequest) -> Answer;
+    fn answer(&self, request: &HttpRequest) -> HttpAnswer;
 }
 
 /// Why the server has ended.
@@ -130,8 +130,8 @@ fn respond(stream: &mut TcpStream, gate: &Gate, service: &impl Service) -> bool 
             // One request that goes wrong is not to take a thread with it.
             let answered = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| service.answer(&request)));
             let broken = "asperity explore: this request has met a fault of the program; please report it with the address.\n";
-            let answer = answered.unwrap_or_else(|_| Answer::plain(Status::Broken, broken));
-            answer.send(stream, request.method != Method::Head);
+            let answer = answered.unwrap_or_else(|_| HttpAnswer::plain(HttpStatus::Broken, broken));
+            answer.send(stream, request.method != HttpMethod::Head);
             true
         }
     }

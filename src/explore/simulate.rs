@@ -52,7 +52,7 @@ impl Stage {
 
 /// A simulation, as it stands.
 #[derive(Clone, Debug)]
-pub struct Run {
+pub struct SimulatedRun {
     /// What is simulated.
     pub case: Case,
     /// The query of the page that started it.
@@ -75,8 +75,8 @@ pub struct Run {
 
 /// Holds the one simulation that there may be.
 #[derive(Default)]
-pub struct Simulator {
-    run: Arc<Mutex<Option<Run>>>,
+pub struct PageSimulator {
+    run: Arc<Mutex<Option<SimulatedRun>>>,
     thread: Mutex<Option<(JoinHandle<()>, Canceller)>>,
 }
 
@@ -84,7 +84,7 @@ fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl Simulator {
+impl PageSimulator {
     /// Starts one, in place of one that has ended. One that runs is not replaced: then the answer
     /// is what to do.
     ///
@@ -96,7 +96,7 @@ impl Simulator {
             return Err("a simulation is running; cancel it first".to_owned());
         }
         let canceller = Canceller::default();
-        let run = Run {
+        let run = SimulatedRun {
             case: case.clone(),
             query,
             stage: Stage::Running,
@@ -140,12 +140,12 @@ impl Simulator {
     }
 
     /// As it stands.
-    pub fn run(&self) -> Option<Run> {
+    pub fn run(&self) -> Option<SimulatedRun> {
         held(&self.run).clone()
     }
 }
 
-fn change(run: &Mutex<Option<Run>>, how: impl FnOnce(&mut Run)) {
+fn change(run: &Mutex<Option<SimulatedRun>>, how: impl FnOnce(&mut SimulatedRun)) {
     if let Some(run) = held(run).as_mut() {
         how(run);
     }
@@ -156,7 +156,7 @@ fn follow(
     case: &Case,
     place: Resources,
     canceller: Canceller,
-    shared: &Arc<Mutex<Option<Run>>>,
+    shared: &Arc<Mutex<Option<SimulatedRun>>>,
     begun: Instant,
 ) -> (Stage, String) {
     let failed = |error: &dyn std::fmt::Display| (Stage::Failed, error.to_string());
@@ -168,7 +168,7 @@ fn follow(
         ..Options::default()
     };
     let mut simulation = match Simulation::with(case, options) {
-        Ok(simulation) => simulation.watched_by(Box::new(Watch(Arc::clone(shared)))),
+        Ok(simulation) => simulation.watched_by(Box::new(PageWatch(Arc::clone(shared)))),
         Err(error) => return failed(&error),
     };
     let mut frames: Vec<SlipPanel> = Vec::new();
@@ -203,9 +203,9 @@ fn follow(
 }
 
 /// Puts progress where the page asks for it.
-struct Watch(Arc<Mutex<Option<Run>>>);
+struct PageWatch(Arc<Mutex<Option<SimulatedRun>>>);
 
-impl Progress for Watch {
+impl Progress for PageWatch {
     fn step(&mut self, position: &Position) {
         change(&self.0, |run| {
             run.fraction = position.fraction;

@@ -13,15 +13,15 @@ pub(super) type Checked = Result<(), String>;
 
 /// From the least to the greatest value that a number may have.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bounds {
+pub(super) struct ValueBounds {
     pub least: f64,
     pub most: f64,
 }
 
 /// Numbers that are printed and drawn, and from which nothing is computed.
-pub(super) const TOLD: Bounds = Bounds { least: -1e12, most: 1e12 };
+pub(super) const TOLD: ValueBounds = ValueBounds { least: -1e12, most: 1e12 };
 
-impl Bounds {
+impl ValueBounds {
     /// Refuses a number beyond them, and one that is none.
     pub fn hold_one(self, key: impl Display, value: f64) -> Checked {
         let Self { least, most } = self;
@@ -68,7 +68,7 @@ impl Bounds {
     }
 }
 
-impl Display for Bounds {
+impl Display for ValueBounds {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "a number from {:?} to {:?}", self.least, self.most)
     }
@@ -80,7 +80,7 @@ mod tests {
 
     #[test]
     fn the_number_that_is_wrong_is_told_by_its_key() {
-        let bounds = Bounds { least: 1.0, most: 10.0 };
+        let bounds = ValueBounds { least: 1.0, most: 10.0 };
         assert_eq!(bounds.hold("b", &[1.0, 2.0, 10.0]), Ok(()));
         let told = bounds.hold("b", &[1.0, 2.0, 1e308]).unwrap_err();
         assert_eq!(told, "b[2] is 1e308, and has to be a number from 1.0 to 10.0");

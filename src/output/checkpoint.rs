@@ -112,7 +112,7 @@ impl Checkpoint {
     /// [`OutputError::Write`]; an earlier checkpoint is then still there.
     pub fn write(&self, path: &Path) -> Result<(), OutputError> {
         replace_atomically(path, |out| {
-            let mut out = Checked { out, sum: crc32fast::Hasher::new(), failed: None };
+            let mut out = SumWriter { out, sum: crc32fast::Hasher::new(), failed: None };
             out.write_all(head().as_bytes())?;
             if let Err(error) = postcard::to_io(self, &mut out) {
                 // postcard keeps no more of an error of the writer than that there was one.
@@ -283,13 +283,13 @@ fn flat(text: &str) -> BTreeMap<String, String> {
 }
 
 /// Sums up what is written, and keeps what went wrong.
-struct Checked<'a> {
+struct SumWriter<'a> {
     out: &'a mut dyn Write,
     sum: crc32fast::Hasher,
     failed: Option<io::Error>,
 }
 
-impl Write for Checked<'_> {
+impl Write for SumWriter<'_> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self.out.write(bytes) {
             Ok(written) => {
@@ -363,7 +363,7 @@ mod tests {
                 Ok(())
             }
         }
-        let mut out = Checked { out: &mut Full, sum: crc32fast::Hasher::new(), failed: None };
+        let mut out = SumWriter { out: &mut Full, sum: crc32fast::Hasher::new(), failed: None };
         assert!(postcard::to_io(&Ledger::default(), &mut out).is_err());
         assert_eq!(out.failed.map(|error| error.kind()), Some(ErrorKind::StorageFull));
     }

@@ -50,7 +50,7 @@ pub struct Limits {
     /// mu; `None` for full stick.
     pub(super) friction: Option<f64>,
     /// Its curves, segment by segment.
-    companion: Vec<Stretch>,
+    companion: Vec<SegmentCurves>,
     /// Its tangents dF_T/d delta_T at the start of shears, segment by segment.
     stiffness: Vec<Option<f64>>,
     /// Elements along the contact radius that were asked of it.
@@ -61,7 +61,7 @@ pub struct Limits {
 
 /// F_N, F_T along x and y, and a over the place in a segment.
 #[derive(Clone, Debug, Default, PartialEq)]
-struct Stretch {
+struct SegmentCurves {
     f_n: Curve,
     f_t: Curve,
     f_t_y: Curve,
@@ -117,7 +117,7 @@ impl Limits {
         let stretch = |(i, segment): (usize, &Segment)| {
             let from = rows.partition_point(|row| row.segment < i);
             let to = rows.partition_point(|row| row.segment <= i);
-            Stretch::new(segment, &start_of(&rows[..from]), rows.get(from..to).unwrap_or_default())
+            SegmentCurves::new(segment, &start_of(&rows[..from]), rows.get(from..to).unwrap_or_default())
         };
         let friction = match case.contact.friction {
             Friction::Coefficient(mu) => Some(mu),
@@ -268,7 +268,7 @@ impl Limits {
     }
 }
 
-impl Stretch {
+impl SegmentCurves {
     fn new(segment: &Segment, start: &StepRecord, rows: &[StepRecord]) -> Self {
         let curve = |of: fn(&StepRecord) -> f64| {
             Curve::through(rows.iter().fold(vec![[0.0, of(start)]], |mut points, row| {

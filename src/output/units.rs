@@ -108,7 +108,7 @@ impl ContactPoint {
     /// A point in the user's units. Pressure and tractions are the point's force over its tributary
     /// reference area, exerted by the plane on the sphere: the shear traction resists the motion. A
     /// point without area has none. A point on the symmetry plane has its area of both halves.
-    pub fn in_units(scaled: &record::ContactPoint, units: &Units) -> Self {
+    pub fn in_units(scaled: &record::RecordedPoint, units: &Units) -> Self {
         let [reference, current] = [&scaled.reference, &scaled.position].map(|x| units.vector(x));
         let [force_x, force_y] = units.orientation.to_user([scaled.force[0], scaled.force[1]]);
         let length = units.radius;
@@ -135,7 +135,7 @@ impl ContactPoint {
     }
 
     /// The whole contact of a step from the points of its meshed half.
-    pub fn whole_of(scaled: &[record::ContactPoint], units: &Units) -> Vec<Self> {
+    pub fn whole_of(scaled: &[record::RecordedPoint], units: &Units) -> Vec<Self> {
         Self::whole(scaled.iter().map(|point| Self::in_units(point, units)).collect())
     }
 }
@@ -182,7 +182,7 @@ mod tests {
 
     #[test]
     fn pressure_times_area_is_the_force() {
-        let scaled = record::ContactPoint {
+        let scaled = record::RecordedPoint {
             node: 9,
             reference: [0.1, 0.2, 0.01],
             position: [0.11, 0.2, 0.0],
@@ -198,8 +198,8 @@ mod tests {
         assert_eq!((point.traction_x, point.status, point.point), (-60.0, ContactStatus::Slip, 9));
         assert_eq!((point.reference_x, point.current_x, point.gap), (0.2, 0.22, 0.0));
         // Half of a point on the symmetry plane is meshed.
-        let middle = ContactPoint::in_units(&record::ContactPoint { on_symmetry_plane: true, ..scaled }, &UNITS);
+        let middle = ContactPoint::in_units(&record::RecordedPoint { on_symmetry_plane: true, ..scaled }, &UNITS);
         assert_eq!((middle.pressure, middle.area, middle.half), (point.pressure, 2.0 * point.area, Half::Both));
-        assert_eq!(ContactPoint::in_units(&record::ContactPoint { area: 0.0, ..scaled }, &UNITS).pressure, 0.0);
+        assert_eq!(ContactPoint::in_units(&record::RecordedPoint { area: 0.0, ..scaled }, &UNITS).pressure, 0.0);
     }
 }

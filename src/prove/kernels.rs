@@ -13,7 +13,7 @@ use crate::conformance::{Comparison, comparisons};
 
 /// A comparison that was made.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Compared {
+pub struct KernelProof {
     /// What was compared.
     pub name: &'static str,
     /// Precision of the residual's kernels: tangents and linear systems are in f32 beside f64.
@@ -43,7 +43,7 @@ pub struct OfKernel {
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct KernelReport {
     /// The comparisons, in their order.
-    pub comparisons: Vec<Compared>,
+    pub comparisons: Vec<KernelProof>,
     /// The kernels that took part.
     pub kernels: Vec<OfKernel>,
     /// Kernels that took part in none: they do in whole cases.
@@ -53,7 +53,7 @@ pub struct KernelReport {
 impl KernelReport {
     /// A sentence for each comparison that disagrees.
     pub fn disagreements(&self) -> Vec<String> {
-        let said = |compared: &Compared| {
+        let said = |compared: &KernelProof| {
             let why = compared.disagrees.as_ref()?;
             Some(format!("{} in {}: {why}", compared.name, compared.precision))
         };
@@ -102,7 +102,7 @@ pub fn compare(context: GpuContext, quick: bool, progress: &mut ProveProgress) -
             }
         }
         let (name, precision, seconds) = (comparison.name, comparison.precision.to_string(), begun.elapsed().as_secs_f64());
-        report.comparisons.push(Compared { name, precision, seconds, disagrees });
+        report.comparisons.push(KernelProof { name, precision, seconds, disagrees });
     }
     report.kernels = kernels.into_values().collect();
     let took_part = |name: &str| report.kernels.iter().any(|of| of.kernel == name);

@@ -6,7 +6,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use crate::bench::BenchError;
-use crate::compute::gpu::source::Source;
+use crate::compute::gpu::source::ShaderSource;
 use crate::compute::gpu::{GpuContext, GpuError, Kernel, Precision};
 
 /// Dispatches of a list.
@@ -28,7 +28,7 @@ pub struct Latency {
 /// Reads nothing and writes nothing.
 static NOTHING: Kernel = Kernel::new(
     "nothing",
-    &[Source {
+    &[ShaderSource {
         path: "src/prove/latency.rs",
         text: "
 @group(0) @binding(0) var<storage, read> numbers: array<real>;
@@ -43,7 +43,7 @@ fn nothing(@builtin(global_invocation_id) id: vec3<u32>) {
 /// Adds one to a number, which the next dispatch needs.
 static COUNT: Kernel = Kernel::new(
     "count",
-    &[Source {
+    &[ShaderSource {
         path: "src/prove/latency.rs",
         text: "
 @group(0) @binding(0) var<storage, read_write> numbers: array<real>;

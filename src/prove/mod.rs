@@ -19,17 +19,17 @@ use serde_json::Value;
 
 use crate::bench::copy::CopyRates;
 use crate::bench::whole_job::{self, WholeJobs, WholeReport};
-use crate::bench::{self, BenchError, Pools};
+use crate::bench::{self, BenchError, ThreadPools};
 use crate::compute::gpu::adapters::AdapterKind;
 use crate::compute::gpu::report::{adapter_json, needs_json};
 use crate::compute::gpu::{DeviceRequest, GpuContext, GpuError, Precision};
 use crate::compute::select::DeviceChoice;
 use kernels::KernelReport;
 use latency::Latency;
-use parity::Parity;
+use parity::DeviceParity;
 use progress::ProveProgress;
 
-pub use options::{Options, Part};
+pub use options::{Options, ProofPart};
 
 /// The first key of a report: what it is and its layout.
 pub const FORMAT: &str = "asperity-prove/1";
@@ -53,7 +53,7 @@ pub struct Jobs {
 
 /// Everything that was found.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct ProofReport {
     /// [`FORMAT`].
     pub format: &'static str,
     /// Version of the program.
@@ -75,7 +75,7 @@ pub struct Report {
     /// Each kernel against the CPU.
     pub kernels: KernelReport,
     /// Whole cases against the CPU.
-    pub parity: Parity,
+    pub parity: DeviceParity,
     /// What a dispatch costs; none where that was not measured.
     pub latency: Option<Latency>,
     /// What memory can do, bytes a second; none where that was not measured.
@@ -86,7 +86,7 @@ pub struct Report {
     pub disagreements: Vec<String>,
 }
 
-impl Report {
+impl ProofReport {
     /// Whether everything that was compared agrees.
     pub fn agrees(&self) -> bool {
         self.disagreements.is_empty()
@@ -114,14 +114,16 @@ fn opened(request: DeviceRequest) -> Result<GpuContext, GpuError> {
 
 /// Work of the parts, in the units of [`ProveProgress::begins`].
 pub fn work(options: &Options) -> f64 {
-    let of = |part: Part, work: f64| if options.has(part) { work } else { 0.0 };
+    let of = |part: ProofPart, work: f64| if options.has(part) { work } else { 0.0 };
     let jobs: f64 = plans(options).iter().map(|&(elements, batches)| weight(elements, batches)).sum();
     let kernels = kernels::comparisons_of(true, options.quick).len() as f64;
-    of(Part::Kernels, kernels) + of(Part::Cases, if options.quick { 15.0 } else { 70.0 }) + of(Part::Times, 1.0 + jobs)
+    of(ProofPart::Kernels, kernels)
+        + of(ProofPart::Cases, if options.quick { 15.0 } else { 70.0 })
+        + of(ProofPart::Times, 1.0 + jobs)
 }
 
 /// How it went, for people: a line for each disagreement, or one.
-pub fn verdict(report: &Report) -> String {
+pub fn verdict(report: &ProofReport) -> String {
     if report.agrees() {
         let (comparisons, cases) = (report.kernels.comparisons.len(), report.parity.rows.iter().map(|row| row.cases.len()));
         return format!("all agree: {comparisons} comparisons of kernels, {} whole cases\n", cases.sum::<usize>());
@@ -133,22 +135,23 @@ pub fn verdict(report: &Report) -> String {
 ///
 /// # Errors
 /// What keeps it from being made at all: no device, no threads. What disagrees is in the report.
-pub fn run(options: &Options, progress: &mut ProveProgress) -> Result<Report, BenchError> {
+pub fn run(options: &Options, progress: &mut ProveProgress) -> Result<ProofReport, BenchError> {
     let context = opened(options.request)?;
     let adapter = context.adapter().clone();
     let has_double = context.supports(Precision::F64).is_ok();
-    let has = |part: Part| options.has(part);
-    let kernels = if has(Part::Kernels) { kernels::compare(context, options.quick, progress) } else { KernelReport::default() };
+    let has = |part: ProofPart| options.has(part);
+    let kernels =
+        if has(ProofPart::Kernels) { kernels::compare(context, options.quick, progress) } else { KernelReport::default() };
     // The others open the device for themselves: one that was lost harms none of them.
-    let parity = if has(Part::Cases) { parity::compare(options, has_double, progress) } else { Parity::default() };
+    let parity = if has(ProofPart::Cases) { parity::compare(options, has_double, progress) } else { DeviceParity::default() };
     let mut disagreements = kernels.disagreements();
     disagreements.extend(parity.disagreements());
-    if has(Part::Kernels) && has(Part::Cases) {
+    if has(ProofPart::Kernels) && has(ProofPart::Cases) {
         let nowhere = kernels.not_compared.iter().filter(|kernel| !parity.kernels.contains(kernel));
         disagreements.extend(nowhere.map(|kernel| format!("{kernel}: it took part in nothing that was compared")));
     }
     let (mut latency, mut copies, mut jobs) = (None, None, Vec::new());
-    if has(Part::Times) {
+    if has(ProofPart::Times) {
         progress.begins("latency and copies", 1.0);
         let mut failed = |what: &str, why: String| disagreements.push(format!("{what}: {why}"));
         latency = measured(options, latency::measure).map_err(|why| failed("latency", why)).ok();
@@ -156,7 +159,7 @@ pub fn run(options: &Options, progress: &mut ProveProgress) -> Result<Report, Be
         jobs = all_jobs(options, progress);
         disagreements.extend(jobs.iter().filter_map(|jobs| jobs.failed.as_ref().map(|why| format!("whole jobs: {why}"))));
     }
-    Ok(Report {
+    Ok(ProofReport {
         format: FORMAT,
         version: env!("CARGO_PKG_VERSION"),
         system: format!("{} on {}", std::env::consts::OS, std::env::consts::ARCH),
@@ -182,9 +185,9 @@ fn measured<T>(options: &Options, measure: impl FnOnce(Arc<GpuContext>) -> Resul
 }
 
 fn copy_rates(options: &Options, context: &GpuContext) -> Result<CopyRates, BenchError> {
-    let of_bench = bench::Options::quick(bench::Device::Gpu, options.threads);
+    let of_bench = bench::Options::quick(bench::BenchDevice::Gpu, options.threads);
     let copied = if options.quick { of_bench.copied / 4 } else { 256 << 20 };
-    CopyRates::measure(&bench::Options { copied, ..of_bench }, Some(context), &Pools::new(options.threads)?)
+    CopyRates::measure(&bench::Options { copied, ..of_bench }, Some(context), &ThreadPools::new(options.threads)?)
 }
 
 /// Bytes of a case on a device for each unknown: 89 MB for 45,810 (docs/performance.md).

@@ -4,7 +4,7 @@ use crate::compute::gpu::DeviceRequest;
 
 /// A part of what is proved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum ProofPart {
     /// Each kernel against the CPU.
     Kernels,
     /// Nine whole cases against the CPU.
@@ -17,7 +17,7 @@ pub enum Part {
 #[derive(Clone, Debug)]
 pub struct Options {
     /// The parts; all if there are none.
-    pub only: Vec<Part>,
+    pub only: Vec<ProofPart>,
     /// Which device: a real one, or any.
     pub request: DeviceRequest,
     /// Threads of what is computed on the CPU.
@@ -27,7 +27,7 @@ pub struct Options {
 }
 
 impl Options {
-    pub(super) fn has(&self, part: Part) -> bool {
+    pub(super) fn has(&self, part: ProofPart) -> bool {
         self.only.is_empty() || self.only.contains(&part)
     }
 }

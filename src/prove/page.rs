@@ -4,12 +4,12 @@ use std::fmt::Write;
 
 use serde_json::Value;
 
-use super::{Jobs, Report};
+use super::{Jobs, ProofReport};
 use crate::bench::whole_job::WholeJob;
 use crate::output::in_words;
 
 /// The page.
-pub fn page(report: &Report) -> String {
+pub fn page(report: &ProofReport) -> String {
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = write_page(&mut text, report);
@@ -20,7 +20,7 @@ fn word<'a>(value: &'a Value, key: &str) -> &'a str {
     value[key].as_str().unwrap_or("unknown")
 }
 
-fn write_page(text: &mut String, report: &Report) -> std::fmt::Result {
+fn write_page(text: &mut String, report: &ProofReport) -> std::fmt::Result {
     let a = &report.adapter;
     writeln!(text, "# asperity prove: {}\n", word(a, "name"))?;
     let how = if report.quick { ", the quick run" } else { "" };
@@ -47,7 +47,7 @@ fn write_page(text: &mut String, report: &Report) -> std::fmt::Result {
     report.jobs.iter().try_for_each(|jobs| write_jobs(text, jobs))
 }
 
-fn write_needs(text: &mut String, report: &Report) -> std::fmt::Result {
+fn write_needs(text: &mut String, report: &ProofReport) -> std::fmt::Result {
     const HAS: [&str; 5] =
         ["max_storage_buffers", "max_uniform_buffers", "max_uniform_buffer", "max_workgroup", "max_workgroup_memory"];
     writeln!(text, "\n## Limits\n\n| | needed | the adapter has | by |\n|---|---|---|---|")?;
@@ -58,7 +58,7 @@ fn write_needs(text: &mut String, report: &Report) -> std::fmt::Result {
     Ok(())
 }
 
-fn write_kernels(text: &mut String, report: &Report) -> std::fmt::Result {
+fn write_kernels(text: &mut String, report: &ProofReport) -> std::fmt::Result {
     let kernels = &report.kernels;
     if kernels.comparisons.is_empty() {
         return Ok(());
@@ -81,7 +81,7 @@ fn write_kernels(text: &mut String, report: &Report) -> std::fmt::Result {
     Ok(())
 }
 
-fn write_parity(text: &mut String, report: &Report) -> std::fmt::Result {
+fn write_parity(text: &mut String, report: &ProofReport) -> std::fmt::Result {
     if report.parity.rows.is_empty() {
         return Ok(());
     }
@@ -115,7 +115,7 @@ fn write_parity(text: &mut String, report: &Report) -> std::fmt::Result {
     Ok(())
 }
 
-fn write_times(text: &mut String, report: &Report) -> std::fmt::Result {
+fn write_times(text: &mut String, report: &ProofReport) -> std::fmt::Result {
     if report.latency.is_none() && report.copies.is_none() {
         return Ok(());
     }

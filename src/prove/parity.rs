@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::Options;
 use super::progress::ProveProgress;
-use crate::bench::whole_job::Scratch;
+use crate::bench::whole_job::ScratchFolder;
 use crate::compute::select::{DeviceChoice, Devices, PrecisionChoice};
 use crate::output::{StepRecord, Summary, read_history};
 use crate::study::{self, Study, StudyDirectory, StudyError, StudyProgress, run_on};
@@ -17,7 +17,7 @@ use crate::study::{self, Study, StudyDirectory, StudyError, StudyProgress, run_o
 const STUDY: &str = include_str!("../../fixtures/studies/parity.toml");
 
 /// The tolerance of a study and how far forces and radii may be from the CPU's.
-struct Bounds {
+struct ParityBounds {
     tolerance: f64,
     in_f64: f64,
     mixed: f64,
@@ -25,8 +25,8 @@ struct Bounds {
 
 /// At the default tolerance Newton may end at another iterate: the CPU's own two linear solvers are
 /// up to 4.2e-4 apart there. Solved tightly, what is left is the device's.
-const BOUNDS: [Bounds; 2] =
-    [Bounds { tolerance: 1e-3, in_f64: 5e-4, mixed: 5e-4 }, Bounds { tolerance: 1e-8, in_f64: 3e-7, mixed: 1e-7 }];
+const BOUNDS: [ParityBounds; 2] =
+    [ParityBounds { tolerance: 1e-3, in_f64: 5e-4, mixed: 5e-4 }, ParityBounds { tolerance: 1e-8, in_f64: 3e-7, mixed: 1e-7 }];
 /// How far the sum of Newton's iterations may be from the CPU's at the default tolerance.
 const ITERATIONS: f64 = 0.05;
 /// The cases that the quick run computes alone too.
@@ -52,7 +52,7 @@ pub struct OfCase {
 
 /// The cases in one precision at one tolerance.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct ParityRow {
     /// `f64`, or `mixed`: steps in f32 that the CPU holds to f64.
     pub precision: &'static str,
     /// The tolerance of Newton's method.
@@ -67,14 +67,14 @@ pub struct Row {
 
 /// All rows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Parity {
+pub struct DeviceParity {
     /// By precision and tolerance.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ParityRow>,
     /// Kernels that took part.
     pub kernels: Vec<&'static str>,
 }
 
-impl Row {
+impl ParityRow {
     fn disagreements(&self) -> Vec<String> {
         let row = format!("parity.toml, {}, tolerance {:e}", self.precision, self.tolerance);
         let mut said: Vec<String> = self.failed.iter().map(|why| format!("{row}: {why}")).collect();
@@ -102,10 +102,10 @@ impl Row {
     }
 }
 
-impl Parity {
+impl DeviceParity {
     /// A sentence for everything that disagrees.
     pub fn disagreements(&self) -> Vec<String> {
-        self.rows.iter().flat_map(Row::disagreements).collect()
+        self.rows.iter().flat_map(ParityRow::disagreements).collect()
     }
 }
 
@@ -169,7 +169,7 @@ fn text_of(tolerance: f64, only: Option<usize>) -> String {
 
 fn computed(devices: &Devices, how: &study::Options, tolerance: f64, only: Option<usize>) -> Result<Vec<Left>, StudyError> {
     let study = Study::parse(&text_of(tolerance, only), "parity.toml")?;
-    let dir = Scratch::new("parity");
+    let dir = ScratchFolder::new("parity");
     let watched = (Arc::new(StudyProgress::new(true)), Arc::new(AtomicBool::new(false)));
     run_on(devices, &study, dir.path(), how, watched)?;
     let left = |case: &study::StudyCase| -> Result<Left, StudyError> {
@@ -184,13 +184,13 @@ fn computed(devices: &Devices, how: &study::Options, tolerance: f64, only: Optio
 
 /// Compares the cases: at the default tolerance, and where there is time tightly, and with steps in
 /// f32 as well.
-pub fn compare(options: &Options, has_double: bool, progress: &mut ProveProgress) -> Parity {
+pub fn compare(options: &Options, has_double: bool, progress: &mut ProveProgress) -> DeviceParity {
     let precisions: &[(&str, PrecisionChoice)] = match (has_double, options.quick) {
         (true, true) => &[("f64", PrecisionChoice::F64)],
         (true, false) => &[("f64", PrecisionChoice::F64), ("mixed", PrecisionChoice::Mixed)],
         (false, _) => &[("mixed", PrecisionChoice::Mixed)],
     };
-    let mut parity = Parity::default();
+    let mut parity = DeviceParity::default();
     for (number, bounds) in BOUNDS.iter().enumerate().take(if options.quick { 1 } else { 2 }) {
         progress.begins(&format!("nine cases on the CPU, tolerance {:e}", bounds.tolerance), 2.0);
         let on_cpu = Devices::open(DeviceChoice::Cpu).map_err(StudyError::from).and_then(|devices| {
@@ -199,7 +199,7 @@ pub fn compare(options: &Options, has_double: bool, progress: &mut ProveProgress
         });
         for &(name, precision) in precisions {
             let bound = if name == "f64" { bounds.in_f64 } else { bounds.mixed };
-            let mut row = Row { precision: name, tolerance: bounds.tolerance, bound, cases: Vec::new(), failed: None };
+            let mut row = ParityRow { precision: name, tolerance: bounds.tolerance, bound, cases: Vec::new(), failed: None };
             let how = self::options(DeviceChoice::Gpu, precision, options.threads);
             let cases = match &on_cpu {
                 Ok(on_cpu) => {
@@ -277,7 +277,7 @@ mod tests {
     fn what_disagrees_is_told() {
         let case =
             OfCase { case: 3, difference: Some(1e-9), newton_device: 40, newton_cpu: 41, repeated: Some(true), alone: None };
-        let row = |case: OfCase| Row { precision: "f64", tolerance: 1e-3, bound: 5e-4, cases: vec![case], failed: None };
+        let row = |case: OfCase| ParityRow { precision: "f64", tolerance: 1e-3, bound: 5e-4, cases: vec![case], failed: None };
         assert_eq!(row(case.clone()).disagreements(), Vec::<String>::new());
         for (wrong, words) in [
             (OfCase { difference: Some(6e-4), ..case.clone() }, "case 3 is 6.0e-4 from the CPU"),

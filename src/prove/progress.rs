@@ -10,7 +10,7 @@ use crate::output::{BAR_PARTS, in_words};
 
 /// Told which part begins.
 pub struct ProveProgress {
-    display: Display,
+    display: ProofDisplay,
     begun: Instant,
     /// Expected work of all parts, in any unit.
     total: f64,
@@ -19,7 +19,7 @@ pub struct ProveProgress {
     current: f64,
 }
 
-enum Display {
+enum ProofDisplay {
     Silent,
     Bar(ProgressBar),
     Plain,
@@ -29,7 +29,7 @@ impl ProveProgress {
     /// What suits the place, for `total` work.
     pub fn new(quiet: bool, total: f64) -> Self {
         let display = if quiet {
-            Display::Silent
+            ProofDisplay::Silent
         } else if io::stderr().is_terminal() {
             let bar = ProgressBar::new(BAR_PARTS);
             // The template is fixed; should it ever be refused, the default style serves.
@@ -37,9 +37,9 @@ impl ProveProgress {
                 bar.set_style(style);
             }
             bar.enable_steady_tick(Duration::from_millis(500));
-            Display::Bar(bar)
+            ProofDisplay::Bar(bar)
         } else {
-            Display::Plain
+            ProofDisplay::Plain
         };
         Self { display, begun: Instant::now(), total, behind: 0.0, current: 0.0 }
     }
@@ -51,19 +51,19 @@ impl ProveProgress {
         let (elapsed, share) = (self.begun.elapsed().as_secs_f64(), self.share());
         let left = left(elapsed, share).map_or_else(String::new, |left| format!(", about {left} left"));
         match &self.display {
-            Display::Silent => {}
-            Display::Bar(bar) => {
+            ProofDisplay::Silent => {}
+            ProofDisplay::Bar(bar) => {
                 bar.set_position((share * BAR_PARTS as f64) as u64);
                 bar.set_message(format!("{what}{left}"));
             }
             // A closed stderr is no reason to stop.
-            Display::Plain => drop(writeln!(io::stderr(), "{:3.0} %  {what}{left}", 100.0 * share)),
+            ProofDisplay::Plain => drop(writeln!(io::stderr(), "{:3.0} %  {what}{left}", 100.0 * share)),
         }
     }
 
     /// All has ended.
     pub fn ends(&mut self) {
-        if let Display::Bar(bar) = &self.display {
+        if let ProofDisplay::Bar(bar) = &self.display {
             bar.finish_and_clear();
         }
     }

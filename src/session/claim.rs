@@ -2,10 +2,10 @@
 //! is not replaced without a word.
 
 use std::fs;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
+use super::error::is_absent;
 use super::{Earlier, SessionError, prepare};
 use crate::case::Case;
 use crate::output::{DirectoryLock, OutputDirectory, Status, Summary, case_difference, read_history};
@@ -102,11 +102,6 @@ fn ago(time: SystemTime) -> String {
 pub fn tidy(dir: &Path, keeps_checkpoint: bool, keeps_end: bool) {
     // What cannot be removed does no harm.
     let _ = OutputDirectory::existing(dir).tidy(keeps_checkpoint, keeps_end);
-}
-
-/// Whether a directory is not there.
-pub fn is_absent(dir: &Path) -> bool {
-    matches!(fs::metadata(dir), Err(error) if error.kind() == ErrorKind::NotFound)
 }
 
 #[cfg(test)]

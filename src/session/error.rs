@@ -1,6 +1,7 @@
 //! What can go wrong with one run.
 
-use std::io;
+use std::fs;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use crate::case::CaseError;
@@ -109,8 +110,13 @@ pub enum SessionError {
 /// What became of the results of a run that broke off, and what to do.
 fn kept(dir: &Path) -> String {
     let dir_name = dir.display();
-    if super::claim::is_absent(&dir.join("case.toml")) {
+    if is_absent(&dir.join("case.toml")) {
         return format!(". nothing of it is left in {dir_name}; run it again from the beginning");
     }
     format!(". What was computed until then is kept in {dir_name}; to go on, run the same command with --resume")
+}
+
+/// Whether nothing is there.
+pub fn is_absent(path: &Path) -> bool {
+    matches!(fs::metadata(path), Err(error) if error.kind() == ErrorKind::NotFound)
 }

@@ -57,7 +57,7 @@ pub struct Simulation {
     pool: Option<Arc<ThreadPool>>,
     notes: Vec<String>,
     history: Vec<StepRecord>,
-    stage: Stage,
+    stage: RunStage,
     /// Kept until the end: nobody else writes there. Last, so that it is given back when all is
     /// written.
     claim: Option<Claim>,
@@ -66,7 +66,7 @@ pub struct Simulation {
 type Seats = Box<dyn FnMut(&Problem) -> Result<Seat<'static>, SimulationError> + Send>;
 
 /// How far it is.
-enum Stage {
+enum RunStage {
     /// Nothing is computed; what is needed for it is there.
     Ready(Box<Ready>),
     Running(Box<Running>),
@@ -138,7 +138,7 @@ impl Simulation {
             pool: pool.transpose()?,
             notes: Vec::new(),
             history: Vec::new(),
-            stage: Stage::BrokenOff,
+            stage: RunStage::BrokenOff,
             claim: None,
             options,
         };
@@ -175,7 +175,7 @@ impl Simulation {
     /// How it ended; `None` before that.
     pub fn outcome(&self) -> Option<&Outcome> {
         match &self.stage {
-            Stage::Ended(outcome, _) => Some(outcome),
+            RunStage::Ended(outcome, _) => Some(outcome),
             _ => None,
         }
     }
@@ -226,8 +226,8 @@ impl Simulation {
     pub fn fields(&mut self) -> Result<Option<StepFields>, SessionError> {
         let units = Units::of(&self.case);
         let follower = match &mut self.stage {
-            Stage::Running(running) => &mut running.follower,
-            Stage::Ended(_, Some(follower)) => follower.as_mut(),
+            RunStage::Running(running) => &mut running.follower,
+            RunStage::Ended(_, Some(follower)) => follower.as_mut(),
             _ => return Ok(None),
         };
         let fields = follower.fields().map_err(|error| SessionError::Simulation(error.into()))?;
@@ -248,8 +248,8 @@ impl Simulation {
 
     fn follower(&self) -> Option<&Follower<'static>> {
         match &self.stage {
-            Stage::Running(running) => Some(&running.follower),
-            Stage::Ended(_, follower) => follower.as_deref(),
+            RunStage::Running(running) => Some(&running.follower),
+            RunStage::Ended(_, follower) => follower.as_deref(),
             _ => None,
         }
     }
@@ -264,7 +264,7 @@ impl Simulation {
     }
 
     /// Takes the directory, meshes and finds a device.
-    fn make_ready(&mut self) -> Result<Stage, SessionError> {
+    fn make_ready(&mut self) -> Result<RunStage, SessionError> {
         let (case, options) = (&self.case, &self.options);
         let (mut checkpoint, mut extends) = (None, None);
         if let Some(out) = &options.out {
@@ -305,18 +305,18 @@ impl Simulation {
             }
         }
         let seats = Box::new(seats((backend, 0), problem.zone, open));
-        Ok(Stage::Ready(Box::new(Ready { problem, seats, computed_on, selection: notes, checkpoint, extends })))
+        Ok(RunStage::Ready(Box::new(Ready { problem, seats, computed_on, selection: notes, checkpoint, extends })))
     }
 
     /// A run that is not computed again.
-    fn ended_before(&mut self, summary: Summary) -> Result<Stage, SessionError> {
+    fn ended_before(&mut self, summary: Summary) -> Result<RunStage, SessionError> {
         if let Some(out) = &self.options.out {
             self.history = read_history(&OutputDirectory::existing(out).history())?;
             let is_done = summary.status == Status::Done;
             tidy(out, is_done && self.case.output.keep_checkpoint, !is_done);
         }
         let message = summary.messages.last().filter(|_| summary.status != Status::Done).cloned();
-        Ok(Stage::Ended(Box::new(Outcome { status: summary.status, message, summary, ended_before: true }), None))
+        Ok(RunStage::Ended(Box::new(Outcome { status: summary.status, message, summary, ended_before: true }), None))
     }
 
     /// Goes on as far as `pace` says; whether a step was accepted.
@@ -325,27 +325,27 @@ impl Simulation {
     }
 
     fn advance_here(&mut self, pace: Pace) -> Result<bool, SessionError> {
-        let mut running = match std::mem::replace(&mut self.stage, Stage::BrokenOff) {
-            Stage::Ready(ready) => match self.set_out(*ready)? {
-                Stage::Running(running) => running,
+        let mut running = match std::mem::replace(&mut self.stage, RunStage::BrokenOff) {
+            RunStage::Ready(ready) => match self.set_out(*ready)? {
+                RunStage::Running(running) => running,
                 ended => {
                     self.stage = ended;
                     return Ok(false);
                 }
             },
-            Stage::Running(running) => running,
-            Stage::Ended(outcome, follower) => {
-                self.stage = Stage::Ended(outcome, follower);
+            RunStage::Running(running) => running,
+            RunStage::Ended(outcome, follower) => {
+                self.stage = RunStage::Ended(outcome, follower);
                 return Ok(false);
             }
-            Stage::BrokenOff => return Err(SessionError::Over),
+            RunStage::BrokenOff => return Err(SessionError::Over),
         };
         let Running { follower, seats, sink } = running.as_mut();
         let mut pacer = Pacer::new(sink.observer(), Units::of(&self.case), &mut self.history, pace);
         let followed = follower.go_on(seats, &mut pacer);
         let (paused, accepted) = (pacer.has_paused(), pacer.has_accepted());
         if paused && followed.is_ok() {
-            self.stage = Stage::Running(running);
+            self.stage = RunStage::Running(running);
             return Ok(accepted);
         }
         let Running { follower, mut sink, .. } = *running;
@@ -356,12 +356,12 @@ impl Simulation {
             results.computed_on(follower.description());
         }
         let outcome = self.conclude(followed, sink)?;
-        self.stage = Stage::Ended(Box::new(outcome), Some(Box::new(follower)));
+        self.stage = RunStage::Ended(Box::new(outcome), Some(Box::new(follower)));
         Ok(accepted)
     }
 
     /// Makes the coarse run, meshes for what it has found, and begins the results.
-    fn set_out(&mut self, ready: Ready) -> Result<Stage, SessionError> {
+    fn set_out(&mut self, ready: Ready) -> Result<RunStage, SessionError> {
         let Ready { mut problem, mut seats, computed_on, selection, mut checkpoint, extends } = ready;
         let case = &self.case;
         let mut progress = self.progress.take().unwrap_or_else(|| Box::new(SilentProgress));
@@ -416,12 +416,12 @@ impl Simulation {
         }
         if stopped {
             // Without a checkpoint: the run will begin with its coarse run again.
-            return Ok(Stage::Ended(Box::new(self.conclude(Ok(Ending::Interrupted), sink)?), None));
+            return Ok(RunStage::Ended(Box::new(self.conclude(Ok(Ending::Interrupted), sink)?), None));
         }
         log::info!("the run:");
         match Follower::new(problem, checkpoint.as_deref().map(Checkpoint::snapshot), &mut seats) {
-            Ok(follower) => Ok(Stage::Running(Box::new(Running { follower, seats, sink }))),
-            Err(error) => Ok(Stage::Ended(Box::new(self.conclude(Err(error), sink)?), None)),
+            Ok(follower) => Ok(RunStage::Running(Box::new(Running { follower, seats, sink }))),
+            Err(error) => Ok(RunStage::Ended(Box::new(self.conclude(Err(error), sink)?), None)),
         }
     }
 
@@ -499,7 +499,7 @@ impl Simulation {
     }
 
     /// Interrupted before an extension had begun: the directory is as it was.
-    fn not_extended_yet(&mut self) -> Result<Stage, SessionError> {
+    fn not_extended_yet(&mut self) -> Result<RunStage, SessionError> {
         let Some(out) = self.options.out.as_ref().map(OutputDirectory::existing) else { return Err(SessionError::Over) };
         let summary = Summary::read(&out.summary())?;
         self.history = read_history(&out.history())?;
@@ -508,7 +508,7 @@ impl Simulation {
             "interrupted{by} before the extension began; the results are as they were. To extend them, run the same command again"
         );
         let outcome = Outcome { status: Status::Interrupted, message: Some(message), summary, ended_before: false };
-        Ok(Stage::Ended(Box::new(outcome), None))
+        Ok(RunStage::Ended(Box::new(outcome), None))
     }
 
     /// Writes the end of the results and says how it went.
@@ -548,7 +548,7 @@ impl Simulation {
 
 impl Drop for Simulation {
     fn drop(&mut self) {
-        let begun = matches!(&self.stage, Stage::Running(running) if matches!(running.sink, Sink::Files(_)));
+        let begun = matches!(&self.stage, RunStage::Running(running) if matches!(running.sink, Sink::Files(_)));
         if begun && !std::thread::panicking() {
             // What cannot be written is lost; the steps are in the history all the same.
             let _ = self.advance(Pace::Halt);

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::SimulationError;
 use super::equator::FreeEquator;
-use super::path::{Start, Target, way_length};
-use super::record::{ContactPoint, StepRecord};
+use super::path::{SegmentStart, Target, way_length};
+use super::record::{RecordedPoint, StepRecord};
 use crate::compute::CaseState;
 use crate::contact::coulomb::Status;
 use crate::mesh::Mesh;
@@ -51,7 +51,7 @@ pub(super) struct Committed {
     /// Gap at each contact node.
     pub gaps: Vec<f64>,
     #[serde(skip)]
-    pub points: Vec<ContactPoint>,
+    pub points: Vec<RecordedPoint>,
     pub record: StepRecord,
     pub h_max: f64,
     /// Longest elastic recovery of any state so far.
@@ -142,7 +142,7 @@ impl Committed {
             let (base, x) = (3 * node as usize, mesh.nodes[node as usize]);
             let on_symmetry_plane = mesh.is_on_symmetry_plane(node);
             let exerted = [force[base], if on_symmetry_plane { 0.0 } else { force[base + 1] }, force[base + 2]];
-            ContactPoint {
+            RecordedPoint {
                 node: node as usize,
                 reference: x,
                 position: [x[0] + u[base], x[1] + u[base + 1], x[2] + u[base + 2]],
@@ -166,7 +166,7 @@ pub(super) struct PathPosition {
     /// The segment that is followed; their number once all are behind.
     pub segment: usize,
     /// The state at its start, `None` before it.
-    pub start: Option<Start>,
+    pub start: Option<SegmentStart>,
     /// Targets of the segment that are reached.
     pub reached: usize,
     /// The next target has been set out for. Its parts that are still to be reached are `waiting`,

@@ -13,11 +13,12 @@ use std::sync::Arc;
 use super::SimulationError;
 use super::checkpoint::{Committed, PathPosition, Snapshot};
 pub use super::ending::{Ending, Outgrowth};
+use super::equator;
 use super::observer::Displacement;
 pub use super::observer::{Observer, StepView};
-use super::path::{Resolution, Start, Target, indentation_targets, straight_targets};
+use super::path::{Resolution, SegmentStart, Target, indentation_targets, straight_targets};
 use super::problem::Problem;
-use super::record::{ContactPoint, StepRecord};
+use super::record::{RecordedPoint, StepRecord};
 use crate::case::{Hold, Scaled, Segment, ShearTarget, unit};
 use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::{Ask, Keeps, Plate, Settled};
@@ -57,16 +58,16 @@ pub struct Drive<'a> {
 }
 
 /// Share of the last step by which a press step is extrapolated. Measured: 0.45 to 0.75 need the
-/// same iterations, a third fewer than none.
+/// same iterations, a third fewer than none. Half and twice of it: `benches/constants`.
 const PRESS_EXTRAPOLATION: f64 = 0.6;
 /// See [`Drive::attempt_stuck`]; all but the first only after a step was bisected so often.
 const SLIDING_RATIOS: [f64; 3] = [3.0, 1.0, 0.3];
 const SHALLOW: usize = 3;
 /// After a step that failed the targets are taken in half as long parts, until a step takes no more
-/// iterations than this.
+/// iterations than this. Half and twice of it: `benches/constants`.
 const EASY: usize = 6;
 /// The same after a step under full stick that took more iterations than this: points come off and
-/// land in it one by one.
+/// land in it one by one. Half and twice of it: `benches/constants`.
 const SLOW: usize = 12;
 /// Targets are taken in 2^2 parts at most.
 const FINEST: u32 = 2;
@@ -224,7 +225,7 @@ impl<'a> Drive<'a> {
     }
 
     /// Sets out for the present segment from the committed state.
-    fn begin_segment(&mut self, segment: &Segment) -> Start {
+    fn begin_segment(&mut self, segment: &Segment) -> SegmentStart {
         self.state.record.segment = self.place.segment;
         self.state.last_increment = None;
         let holds_force = match segment {
@@ -259,9 +260,9 @@ impl<'a> Drive<'a> {
         start
     }
 
-    fn start(&self) -> Start {
+    fn start(&self) -> SegmentStart {
         let r = &self.state.record;
-        Start {
+        SegmentStart {
             h: r.h,
             h_max: self.state.h_max,
             delta_t: r.delta_t,
@@ -401,7 +402,7 @@ impl<'a> Drive<'a> {
     /// One Newton solve in which open points and those slide whose tangential force exceeds `ratio`
     /// times their normal one.
     fn slide_beyond(&mut self, ratio: f64, target: &Target) -> Result<StepOutcome, SimulationError> {
-        let beyond = |p: &ContactPoint| p.status == Status::Open || p.force[0].hypot(p.force[1]) > ratio * p.force[2];
+        let beyond = |p: &RecordedPoint| p.status == Status::Open || p.force[0].hypot(p.force[1]) > ratio * p.force[2];
         let sliding: Vec<bool> = self.state.points.iter().map(beyond).collect();
         self.newton.set_sliding(&sliding);
         self.attempt(target)
@@ -448,7 +449,7 @@ impl<'a> Drive<'a> {
             came_off: &[],
         };
         let mut handle = CaseHandle { backend: &mut *self.backend, case: self.case };
-        let outcome = widening::solve(&mut self.newton, &mut handle, &start, &mut control, self.state.equator.as_ref())?;
+        let outcome = equator::solve(&mut self.newton, &mut handle, &start, &mut control, self.state.equator.as_ref())?;
         self.state.stretch = control.pose.stretch;
         self.place.wasted += self.newton.take_given_up();
         if let StepOutcome::Converged(_) = outcome {

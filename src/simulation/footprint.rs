@@ -8,7 +8,7 @@
 
 use std::f64::consts::PI;
 
-use super::record::ContactPoint;
+use super::record::RecordedPoint;
 use crate::contact::coulomb::Status;
 
 /// Size of a contact.
@@ -24,7 +24,7 @@ pub struct Footprint {
 }
 
 /// A contact point in the polar frame of the contact.
-struct Polar {
+struct PolarPlace {
     /// Distance from the middle of the contact, along the plane.
     r: f64,
     /// The same in the undeformed body: the chord from the middle. On a sphere as on a flat what is
@@ -53,7 +53,7 @@ const FEWEST_POINTS: usize = 6;
 
 /// Measures the contact of one committed state; `spacing` is the typical distance of contact
 /// points, of which so many `copies` make the contact.
-pub fn footprint(points: &[ContactPoint], spacing: f64, copies: usize) -> Footprint {
+pub fn footprint(points: &[RecordedPoint], spacing: f64, copies: usize) -> Footprint {
     let copies = copies as f64;
     let closed = || points.iter().filter(|p| p.status != Status::Open);
     let area: f64 = closed().map(|p| p.area).sum();
@@ -76,9 +76,9 @@ pub fn footprint(points: &[ContactPoint], spacing: f64, copies: usize) -> Footpr
 
 /// The points in the polar frame of the contact: around the middle of its force, and of its area in
 /// the undeformed body.
-fn polar(points: &[ContactPoint]) -> Vec<Polar> {
+fn polar(points: &[RecordedPoint]) -> Vec<PolarPlace> {
     let closed = || points.iter().filter(|p| p.status != Status::Open);
-    let mean = |weight: fn(&ContactPoint) -> f64, of: fn(&ContactPoint) -> f64| {
+    let mean = |weight: fn(&RecordedPoint) -> f64, of: fn(&RecordedPoint) -> f64| {
         let sum: f64 = closed().map(weight).sum();
         if sum > 0.0 { closed().map(|p| weight(p) * of(p)).sum::<f64>() / sum } else { 0.0 }
     };
@@ -93,7 +93,7 @@ fn polar(points: &[ContactPoint]) -> Vec<Polar> {
         (by_square + square * p.reference[2], squares + square * square)
     });
     let middle = [x, y, if squares > 0.0 { by_square / squares * (x * x + y * y) } else { 0.0 }];
-    let point = |p: &ContactPoint| Polar {
+    let point = |p: &RecordedPoint| PolarPlace {
         r: (p.position[0] - centre[0]).hypot(p.position[1] - centre[1]),
         s: p.reference.iter().zip(middle).map(|(x, c)| (x - c) * (x - c)).sum::<f64>().sqrt(),
         area: p.area,
@@ -106,10 +106,10 @@ fn polar(points: &[ContactPoint]) -> Vec<Polar> {
 
 /// Where what was at `s` is now: a line through the points near it, which count the more the nearer
 /// they are (Cleveland, J. Am. Stat. Assoc. 74, 1979). Of a few points, all stretched alike.
-fn present_radius(points: &[Polar], s: f64, spacing: f64) -> f64 {
+fn present_radius(points: &[PolarPlace], s: f64, spacing: f64) -> f64 {
     let through = |width: f64| {
         let near = points.iter().filter(|p| (p.s - s).abs() < width);
-        let weight = |p: &Polar| p.area * (1.0 - ((p.s - s).abs() / width).powi(3)).powi(3);
+        let weight = |p: &PolarPlace| p.area * (1.0 - ((p.s - s).abs() / width).powi(3)).powi(3);
         Some(line(near.map(|p| (weight(p), p.s - s, p.r)))?.1)
     };
     [NEAR, 2.0 * NEAR, 4.0 * NEAR].into_iter().find_map(|width| through(width * spacing)).unwrap_or_else(|| {
@@ -123,11 +123,11 @@ fn present_radius(points: &[Polar], s: f64, spacing: f64) -> f64 {
 
 /// Height in the middle and curvature of the surface in contact: the paraboloid z = z_0 + kappa
 /// r^2/2 that fits its closed points best, by their areas. `None` for a few points.
-pub fn bulge(points: &[ContactPoint]) -> Option<[f64; 2]> {
+pub fn bulge(points: &[RecordedPoint]) -> Option<[f64; 2]> {
     let closed = || points.iter().filter(|p| p.status != Status::Open);
     let force: f64 = closed().map(|p| p.force[2]).sum();
     let centre = if force > 0.0 { closed().map(|p| p.force[2] * p.position[0]).sum::<f64>() / force } else { 0.0 };
-    let square = |p: &ContactPoint| (p.position[0] - centre).powi(2) + p.position[1].powi(2);
+    let square = |p: &RecordedPoint| (p.position[0] - centre).powi(2) + p.position[1].powi(2);
     let (slope, height) = line(closed().map(|p| (p.area, square(p), p.position[2])))?;
     Some([height, 2.0 * slope])
 }
@@ -152,13 +152,13 @@ fn line(points: impl Iterator<Item = (f64, f64, f64)>) -> Option<(f64, f64)> {
 }
 
 /// A profile of the pressure, p^m = at_zero + slope s^2.
-struct Profile {
+struct PressureProfile {
     exponent: f64,
     slope: f64,
     at_zero: f64,
 }
 
-impl Profile {
+impl PressureProfile {
     fn pressure(&self, squared: f64) -> f64 {
         (self.at_zero + self.slope * squared).max(0.0).powf(1.0 / self.exponent)
     }
@@ -186,17 +186,17 @@ impl Profile {
 /// abruptly, so far inside `touching` that it carries as much as they do. Where they carry more, as
 /// under friction, which moves the pressure of an elastic contact inwards, it runs out more slowly
 /// than Hertz's: with that power of p, less than the second, with which it carries what they do.
-fn edge_from_pressure(points: &[Polar], touching: f64, spacing: f64, angle: f64) -> Option<f64> {
+fn edge_from_pressure(points: &[PolarPlace], touching: f64, spacing: f64, angle: f64) -> Option<f64> {
     let inside = touching - RIM * spacing;
     let from = (inside - RING * spacing).max(0.0);
     let ring = || points.iter().filter(|p| p.closed && (from..inside).contains(&p.s));
     let fit = |exponent: f64| {
-        let pressure = |p: &Polar| (p.force / p.area).max(0.0).powf(exponent);
+        let pressure = |p: &PolarPlace| (p.force / p.area).max(0.0).powf(exponent);
         let (slope, at_zero) = line(ring().map(|p| (p.area, p.s * p.s, pressure(p))))?;
-        Some(Profile { exponent, slope, at_zero })
+        Some(PressureProfile { exponent, slope, at_zero })
     };
     let rim = || points.iter().filter(|p| p.closed && p.s >= inside);
-    let lacking = |profile: &Profile| rim().map(|p| profile.pressure(p.s * p.s) * p.area - p.force).sum::<f64>();
+    let lacking = |profile: &PressureProfile| rim().map(|p| profile.pressure(p.s * p.s) * p.area - p.force).sum::<f64>();
     let [hertz, least] = EXPONENTS;
     let mut profile = fit(hertz)?;
     let missing = lacking(&profile);
@@ -221,7 +221,7 @@ fn halved(mut lo: f64, mut hi: f64, is_below: impl Fn(f64) -> bool) -> f64 {
 /// The edge from the gap. It opens as (r - a)^q, with q = 3/2 at an elastic edge (Johnson 1985,
 /// section 5.1) and q = 1 where plastic flow has piled the material up; of these the line gap^(1/q)
 /// that fits best is taken, with q in steps of 1/20.
-fn radius_from_gap(points: &[Polar], touching: f64, spacing: f64) -> Option<f64> {
+fn radius_from_gap(points: &[PolarPlace], touching: f64, spacing: f64) -> Option<f64> {
     let band = || points.iter().filter(|p| !p.closed && p.gap > 0.0 && (p.r - touching).abs() < BAND * spacing);
     let mut best: Option<(f64, f64)> = None;
     for i in 0..=10 {

@@ -3,7 +3,7 @@
 use super::checkpoint::Snapshot;
 use super::error::ObserverError;
 use super::problem::Problem;
-use super::record::{ContactPoint, StepRecord};
+use super::record::{RecordedPoint, StepRecord};
 use crate::case::Scaled;
 use crate::compute::handle::at;
 use crate::compute::iterate::{Ask, Plate, Reply};
@@ -59,9 +59,9 @@ pub struct StepView<'a> {
     pub(super) newton: &'a Newton,
     pub(super) displacement: Displacement<'a>,
     /// Every point of the sphere that can touch.
-    pub points: &'a [ContactPoint],
+    pub points: &'a [RecordedPoint],
     /// Every point of another body that deforms that can touch, in its own coordinates.
-    pub opponent_points: &'a [ContactPoint],
+    pub opponent_points: &'a [RecordedPoint],
     pub(super) backend: &'a mut dyn Compute,
     pub(super) case: usize,
 }

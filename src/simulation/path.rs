@@ -21,7 +21,7 @@ pub struct Target {
 
 /// What the increments of a segment are made from: the state at its start.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Start {
+pub struct SegmentStart {
     /// Indentation.
     pub h: f64,
     /// Largest indentation so far.
@@ -36,7 +36,7 @@ pub struct Start {
     pub f_n: f64,
     /// Contact radius.
     pub a: f64,
-    /// Longest elastic recovery of any state so far (see [`Start::recovery`]).
+    /// Longest elastic recovery of any state so far (see [`SegmentStart::recovery`]).
     pub longest_recovery: f64,
     /// Coefficient of friction; infinite for full stick.
     pub friction: f64,
@@ -64,7 +64,7 @@ pub struct Resolution {
 /// points begin to slip.
 pub const SHEAR_GROWTH: f64 = 1.3;
 /// The growing increments end at this many elastic slip displacements (full slip was seen at 3.3 of
-/// them in fully plastic contacts).
+/// them in fully plastic contacts). Half and twice of it: `benches/constants`.
 const SHEAR_RANGE: f64 = 4.5;
 /// Friction beyond which the yield stress in shear, not friction, limits the traction: k/p =
 /// 0.577/2.8, with a margin.
@@ -76,7 +76,8 @@ pub const RELEASE_STEPS: f64 = 12.0;
 /// No increment of a shear is longer than this share of the contact radius; where everything slips
 /// those of a shear of given length go on growing up to it. What comes into contact or leaves it
 /// while it slips makes an error of the first order in this share: at friction 0.95 and h/R = 0.07,
-/// where sticking contacts allow increments five times as long, F_T is 7 % off with those.
+/// where sticking contacts allow increments five times as long, F_T is 7 % off with those. Half and
+/// twice of it: `benches/constants`.
 const LARGEST_SHEAR_STEP: f64 = 0.05;
 /// No step turns the sphere by more than this angle, in rad: what slips is moved along a chord in
 /// it, and friction would point beside the way by half of the angle.
@@ -115,12 +116,12 @@ pub fn way_length(([x, y], [about_x, about_y, twist]): ([f64; 2], [f64; 3]), a: 
 
 impl Resolution {
     /// Step of h of an unloading.
-    pub fn release_step(&self, start: &Start) -> f64 {
+    pub fn release_step(&self, start: &SegmentStart) -> f64 {
         start.recovery() / RELEASE_STEPS * self.coarseness
     }
 }
 
-impl Start {
+impl SegmentStart {
     /// Where the segment starts, as a target.
     pub fn place(&self) -> Target {
         let Self { h, delta_t, across, angles, .. } = *self;
@@ -169,7 +170,7 @@ fn press(n: usize, h: f64) -> Vec<f64> {
 }
 
 /// Targets of an indentation segment from `start` to indentation `h`.
-pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Vec<Target> {
+pub fn indentation_targets(start: &SegmentStart, h: f64, resolution: &Resolution) -> Vec<Target> {
     let target = |h, extrapolate| Target { h, extrapolate, ..start.place() };
     let mut targets = Vec::new();
     let mut from = start.h;
@@ -229,7 +230,7 @@ pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Ve
 
 /// Targets of a segment from `start` to `end` in a straight line: at every place no longer than the
 /// steps of the press and of the shear alone would be there.
-pub fn straight_targets(start: &Start, end: &Target, resolution: &Resolution) -> Vec<Target> {
+pub fn straight_targets(start: &SegmentStart, end: &Target, resolution: &Resolution) -> Vec<Target> {
     let rise = end.h - start.h;
     let length = way_length(end.way_from(&start.place()), start.a);
     let sheared = sheared_ends(start, end.h, length, end.hold_force, resolution);
@@ -277,7 +278,7 @@ pub fn straight_targets(start: &Start, end: &Target, resolution: &Resolution) ->
 }
 
 /// Ends of the steps of a way of this length along the surface, as shares of it; it ends at `h`.
-fn sheared_ends(start: &Start, h: f64, length: f64, held: bool, resolution: &Resolution) -> Vec<f64> {
+fn sheared_ends(start: &SegmentStart, h: f64, length: f64, held: bool, resolution: &Resolution) -> Vec<f64> {
     if start.a > 0.0 {
         let steps = ShearSteps::new(start, length, held, resolution);
         (1..).map(|i| steps.distance(i) / length).take_while(|&share| share < 1.0 - 1e-9).chain([1.0]).collect()
@@ -308,7 +309,7 @@ pub struct ShearSteps {
 impl ShearSteps {
     /// Steps for a segment of given length (infinite for `"full-slip"`) which holds the normal
     /// force or not.
-    pub fn new(start: &Start, length: f64, held: bool, resolution: &Resolution) -> Self {
+    pub fn new(start: &SegmentStart, length: f64, held: bool, resolution: &Resolution) -> Self {
         let count = resolution.shear_steps.max(1);
         let range = (SHEAR_RANGE * start.slip_displacement()).min(length);
         let total: f64 = (1..=count).map(|i| (i as f64).powf(SHEAR_GROWTH)).sum();
@@ -345,8 +346,8 @@ impl ShearSteps {
 mod tests {
     use super::*;
 
-    fn start(a: f64, friction: f64) -> Start {
-        Start {
+    fn start(a: f64, friction: f64) -> SegmentStart {
+        SegmentStart {
             h: 0.02,
             h_max: 0.02,
             delta_t: 0.0,
@@ -363,7 +364,7 @@ mod tests {
     }
 
     /// Ends of the steps of a shear.
-    fn ends(start: &Start, length: f64) -> Vec<f64> {
+    fn ends(start: &SegmentStart, length: f64) -> Vec<f64> {
         let steps = ShearSteps::new(start, length, false, &Resolution { press_steps: 20, shear_steps: 15, coarseness: 1.0 });
         (1..).map(|i| steps.distance(i)).take_while(|d| *d < length).collect()
     }
@@ -372,7 +373,7 @@ mod tests {
     fn a_press_starts_with_small_steps_and_ends_with_equal_ones() {
         let resolution = |press_steps| Resolution { press_steps, shear_steps: 15, coarseness: 1.0 };
         for n in [1, 2, 3, 5, 9, 24] {
-            let first = Start { h: 0.0, h_max: 0.0, ..start(0.0, 0.3) };
+            let first = SegmentStart { h: 0.0, h_max: 0.0, ..start(0.0, 0.3) };
             let ends: Vec<f64> = indentation_targets(&first, 0.02, &resolution(n)).iter().map(|t| t.h).collect();
             assert_eq!((ends.len(), ends[n - 1]), (n, 0.02));
             let steps: Vec<f64> = std::iter::once(ends[0]).chain(ends.windows(2).map(|w| w[1] - w[0])).collect();
@@ -385,7 +386,7 @@ mod tests {
             }
         }
         // Half of the way is left: half of the steps, and small ones first again.
-        let half = Start { h: 0.01, h_max: 0.01, ..start(0.14, 0.3) };
+        let half = SegmentStart { h: 0.01, h_max: 0.01, ..start(0.14, 0.3) };
         let targets = indentation_targets(&half, 0.02, &resolution(24));
         assert!(targets.len() == 14 && targets[0].h < 0.0102 && targets[13].h == 0.02, "{targets:?}");
     }
@@ -395,13 +396,13 @@ mod tests {
         let resolution = |coarseness| Resolution { press_steps: 20, shear_steps: 15, coarseness };
         // The release ended where nothing touches, or went on into the air.
         for (h, far) in [(0.0178, 0), (0.01, 1)] {
-            let released = Start { h, f_n: 0.0, a: 0.0, ..start(0.2, 0.3) };
+            let released = SegmentStart { h, f_n: 0.0, a: 0.0, ..start(0.2, 0.3) };
             let targets = indentation_targets(&released, 0.02, &resolution(1.0));
             let ends: Vec<f64> = std::iter::once(h).chain(targets.iter().map(|t| t.h)).collect();
             assert_eq!(ends.last(), Some(&0.02));
             assert!(ends[1 + far..].windows(2).all(|w| w[1] > w[0] && w[1] - w[0] < 0.002 / 11.9), "{ends:?}");
             // A force of next to nothing cuts it no otherwise.
-            let touching = Start { f_n: 1e-12, a: 1e-3, ..released };
+            let touching = SegmentStart { f_n: 1e-12, a: 1e-3, ..released };
             assert_eq!(indentation_targets(&touching, 0.02, &resolution(1.0)), targets);
             assert!(indentation_targets(&released, 0.02, &resolution(2.0)).len() < targets.len());
         }
@@ -410,7 +411,7 @@ mod tests {
     #[test]
     fn an_oblique_segment_is_cut_as_finely_as_a_press_and_a_shear() {
         let resolution = Resolution { press_steps: 20, shear_steps: 15, coarseness: 1.0 };
-        let first = Start { h: 0.0, h_max: 0.0, f_n: 0.0, ..start(0.0, 0.3) };
+        let first = SegmentStart { h: 0.0, h_max: 0.0, f_n: 0.0, ..start(0.0, 0.3) };
         let later = start(0.2, 0.3);
         for (from, h, d) in [
             (first, 0.02, 0.005),
@@ -419,7 +420,7 @@ mod tests {
             (later, 0.0201, 0.03),
             (later, 0.0, 0.02),
             (later, 0.0199, -0.01),
-            (Start { h: 0.019, delta_t: 0.001, ..later }, 0.03, -0.002),
+            (SegmentStart { h: 0.019, delta_t: 0.001, ..later }, 0.03, -0.002),
         ] {
             let targets = straight_targets(&from, &Target { h, delta_t: d, ..from.place() }, &resolution);
             let last = targets[targets.len() - 1];
@@ -450,7 +451,7 @@ mod tests {
     fn no_step_turns_by_far() {
         let resolution = Resolution { press_steps: 20, shear_steps: 15, coarseness: 1.0 };
         let touching = start(0.2, 0.3);
-        let first = Start { h: 0.0, h_max: 0.0, f_n: 0.0, ..start(0.0, 0.3) };
+        let first = SegmentStart { h: 0.0, h_max: 0.0, f_n: 0.0, ..start(0.0, 0.3) };
         for (from, h) in [(touching, touching.h), (first, 0.02)] {
             for angles in [[0.0, 0.0, 3.0], [0.1, -0.4, 0.0], [0.0, 0.0, -0.02]] {
                 let targets = straight_targets(&from, &Target { h, angles, ..from.place() }, &resolution);
@@ -481,7 +482,7 @@ mod tests {
         let last: Vec<f64> = ends.windows(2).map(|w| w[1] - w[0]).collect();
         assert!(last.windows(2).all(|w| w[1] > w[0]) && last.iter().all(|d| *d <= 0.05 * 0.2 * 1.0001));
         // A deep elastic contact, whose slip displacement is a large share of its radius.
-        let elastic = Start { f_n: 4.0 / 3.0 * 0.25_f64.powi(3), reversed: true, ..start(0.25, 0.95) };
+        let elastic = SegmentStart { f_n: 4.0 / 3.0 * 0.25_f64.powi(3), reversed: true, ..start(0.25, 0.95) };
         let ends = self::ends(&elastic, 0.6);
         assert!(ends.windows(2).all(|w| w[1] - w[0] <= 0.05 * 0.25 * 1.0001) && ends.len() < 80, "{ends:?}");
     }

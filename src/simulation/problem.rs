@@ -16,6 +16,7 @@ use crate::memory;
 use crate::mesh::couple::{self, couple};
 use crate::mesh::sphere::{SphereSpec, flat_mesh, opponent_mesh, sphere_mesh};
 use crate::mesh::{Mesh, MeshError, whole};
+use crate::solver::boundary::Boundary;
 use crate::solver::newton::Newton;
 use crate::solver::opponent;
 use crate::solver::opponent::couple::TwoBodies;
@@ -23,7 +24,6 @@ use crate::solver::opponent::joint::Joint;
 use crate::solver::opponent::pair::EqualPair;
 use crate::solver::opponent::plane::Plane;
 use crate::solver::opponent::rigid::RigidSphere;
-use crate::solver::system::Boundary;
 use crate::solver::{FULLY_PLASTIC, Settings, SolverError, first_linear, held_linear, loosest_linear, monotone_from};
 
 /// A case ready to be simulated.
@@ -67,7 +67,7 @@ pub struct Problem {
 /// Steps of a press: so many and so many more for each element along the contact radius; the front
 /// moves by a third of an element in the last ones. In the main job at 16 elements F_N(h) at the
 /// end, half-way and at a quarter lacks 0.2, 0.5 and 2 % at these 26 steps (of which the steps 0.1,
-/// 0.3 and 1 %).
+/// 0.3 and 1 %). Half and twice of each: `benches/constants`.
 const PRESS_STEPS: f64 = 14.0;
 const PRESS_STEPS_PER_ELEMENT: f64 = 0.75;
 const SHEAR_STEPS: usize = 15;
@@ -76,7 +76,7 @@ const SHEAR_STEPS: usize = 15;
 /// flow in one of the bodies are thrown back, as the plate strains one of them alone at first.
 /// Where a press starts from all of the last step, the first system alone: at E_2/E_1 = 3, R_2/R_1
 /// = 2 and 12 elements it takes 120 iterations with 439 of Krylov so, 118 with 548 with both, and
-/// 130 with 449 with none.
+/// 130 with 449 with none. Half and twice of either: `benches/constants`.
 const COUPLE_LINEAR: f64 = 0.3;
 const COUPLE_FIRST: f64 = 0.002;
 /// Poisson's ratio; see [`Problem::pressed_in_full`].

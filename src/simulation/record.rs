@@ -201,7 +201,7 @@ impl StepRecord {
 
 /// A contact point of a committed state, scaled.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactPoint {
+pub struct RecordedPoint {
     /// Node index.
     pub node: usize,
     /// Reference position.

@@ -93,7 +93,8 @@ pub fn first_zone(case: &Case, scout: Option<&Scout>) -> Result<Zone, Simulation
     Ok(scout.map_or(asked, |scout| scout.zone(asked, spacing)))
 }
 
-/// Elements by which the scout's zone is wider than the run's.
+/// Elements by which the scout's zone is wider than the run's. Half and twice of it:
+/// `benches/constants`.
 const ROOM: f64 = 0.75;
 
 impl Scout {

@@ -1,12 +1,14 @@
 //! From one accepted state to the next: a semismooth Newton iteration with a merit line search.
 //!
 //! `newton` iterates one step, of which `outcome` tells how it went; `iterate` has its vectors, on
-//! the host or on a device. `system` holds the residual of the host's, `contact_rows` those of its
-//! matrix that contact decides on, `opponent` all that depends on what the body is pressed against;
-//! `systems` solves for the correction, with `pair` for two equal spheres and `couple` for two
-//! bodies (`tied` is what these have in common), `phases` is what its parts cost, `pose` where the
-//! plate stands. Choosing steps and bisecting them is the simulation's business.
+//! the host or on a device. `trial` is what is known at one displacement, `boundary` what is
+//! prescribed, `system` the residual of the one under the other; `contact_rows` are the rows of the
+//! matrix that contact decides on, `opponent` is all that depends on what the body is pressed
+//! against; `systems` solves for the correction, with `pair` for two equal spheres and `couple` for
+//! two bodies (`tied` is what these have in common), `phases` is what its parts cost, `pose` where
+//! the plate stands. Choosing steps and bisecting them is the simulation's business.
 
+pub mod boundary;
 pub mod contact_rows;
 pub mod iterate;
 pub mod newton;
@@ -16,6 +18,7 @@ pub mod phases;
 pub mod pose;
 pub mod system;
 pub mod systems;
+pub mod trial;
 
 #[cfg(test)]
 mod tests;

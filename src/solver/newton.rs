@@ -11,8 +11,8 @@ use super::opponent::{Opponent, StepTaken};
 use super::outcome::{Halt, Iteration, StepFailure, StepOutcome, StepReport};
 use super::phases::{Lap, Phase, PhaseTimes};
 use super::pose::{MODES, Pose};
-use super::system::Trial;
 use super::systems::Systems;
+use super::trial::Trial;
 use super::{Control, Settings, SolverError};
 use crate::compute::ComputeError;
 use crate::compute::handle::CaseHandle;
@@ -23,11 +23,12 @@ use crate::mesh::Mesh;
 /// Eisenstat & Walker (1996), choice 2: eta = gamma (m_k / m_k-1)^2. Not below what the tolerance
 /// of the step asks for, and at the loosest to [`Settings::loosest_linear`]. Solving more tightly
 /// (gamma 0.9, the first system to 0.01) takes a sixth more processor time for 3 % fewer
-/// iterations: it is plastic loading and unloading that the iteration has to find.
+/// iterations: it is plastic loading and unloading that the iteration has to find. Half and twice
+/// of it: `benches/constants`.
 const FORCING_GAMMA: f64 = 2.0;
 /// The first linear system of a step is solved no further than this.
 const TIGHTEST_FIRST: f64 = 1e-4;
-/// A held normal force is met to this share of it.
+/// A held normal force is met to this share of it. Half and twice of it: `benches/constants`.
 const HELD_TOLERANCE: f64 = 5e-5;
 /// Where a step has been bisected again and again, to this.
 const HELD_AT_LAST: f64 = 2e-4;
@@ -36,11 +37,13 @@ const HELD_AT_LAST: f64 = 2e-4;
 const TANGENTIAL: f64 = 10.0 / 3.0;
 /// At a kink of the merit, where a point at the edge changes its status whatever the step length,
 /// no step lowers it, and the iteration would go round in circles until the step is given up. An
-/// iterate so many tolerances away is then taken as it is.
+/// iterate so many tolerances away is then taken as it is. Half and twice of it:
+/// `benches/constants`.
 const KINK: f64 = 3.0;
 
 /// A step that has used up its iterations goes on, up to twice as many, as long as so many of them
-/// lowered the merit by this factor. Not where it has only a few: who asks for that means it.
+/// lowered the merit by this factor. Not where it has only a few: who asks for that means it. Half
+/// and twice of the factor: `benches/constants`.
 const LAST_ITERATIONS: usize = 3;
 const CONVERGING: f64 = 0.2;
 const FEW_ITERATIONS: usize = 10;
@@ -116,7 +119,7 @@ impl Newton {
 
     /// What the body is pressed against.
     pub fn opponent(&self) -> &dyn Opponent {
-        &*self.iterates.host.boundary().opponent
+        self.iterates.host.opponent()
     }
 
     /// Which iterates of the case stay on this backend.
@@ -129,7 +132,7 @@ impl Newton {
     /// where these are not those of one body over a plane; `None` where neither does.
     pub fn stays_on_host(&self) -> Option<&'static str> {
         let host = &self.iterates.host;
-        if !host.boundary().opponent.is_plane() {
+        if !host.opponent().is_plane() {
             return Some(
                 "the sphere is pressed against a body, so the vectors and linear systems of Newton's method stay on the host",
             );

@@ -10,7 +10,7 @@ use super::directory::{Earlier, StudyDirectory};
 use super::file::Study;
 use super::place::place;
 use super::row::{Row, RowStatus, write_table};
-use super::run::{Begun, Report, begin, read_rows};
+use super::run::{PreparedStudy, Report, begin, read_rows};
 use crate::output::{DirectoryLock, OutputDirectory, write_atomically};
 
 /// What was joined.
@@ -55,7 +55,7 @@ pub fn merge(sources: &[PathBuf], out: &Path) -> Result<Merged, StudyError> {
         return Err(refused(out, "there is nothing to merge. Give directories of `asperity study --out`".to_owned()));
     };
     let target = StudyDirectory::new(out);
-    let Begun { study, mut rows, lock: _lock } = begin(&target, first, Earlier::Keep, |_, _| Ok(()))?;
+    let PreparedStudy { study, mut rows, lock: _lock } = begin(&target, first, Earlier::Keep, |_, _| Ok(()))?;
     let mut merged = Merged { report: Report::default(), copied: 0, missing: Vec::new(), busy: Vec::new() };
     for (directory, source) in studies.iter().filter(|(directory, _)| !is_same(directory.root(), out)) {
         for (number, (case, there)) in study.cases.iter().zip(&source.cases).enumerate() {

@@ -14,7 +14,7 @@ use crate::output::{BAR_PARTS, Position, Progress, in_words};
 /// Told by all workers about their cases.
 pub struct StudyProgress {
     display: Display,
-    state: Mutex<State>,
+    state: Mutex<ProgressState>,
 }
 
 enum Display {
@@ -23,7 +23,7 @@ enum Display {
     Plain(Mutex<Box<dyn Write + Send>>),
 }
 
-struct State {
+struct ProgressState {
     begun: Instant,
     /// Cases that are to be computed, with their expected costs and the share of each that is
     /// behind.
@@ -55,7 +55,7 @@ impl StudyProgress {
     }
 
     fn on(display: Display) -> Self {
-        let state = State {
+        let state = ProgressState {
             begun: Instant::now(),
             cost: Vec::new(),
             behind: Vec::new(),
@@ -68,7 +68,7 @@ impl StudyProgress {
         Self { display, state: Mutex::new(state) }
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
+    fn state(&self) -> MutexGuard<'_, ProgressState> {
         // A worker that panicked left counts behind, and counts are never half-made.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -157,7 +157,7 @@ impl StudyProgress {
     }
 }
 
-impl State {
+impl ProgressState {
     /// Share of the work that is behind, 0 to 1.
     fn share(&self) -> f64 {
         let all: f64 = self.cost.iter().sum();

@@ -33,14 +33,14 @@ pub const FIRST_COLUMNS: [&str; TEXTS.len()] = {
 };
 
 /// What the last columns are made of.
-struct Numbers<'a> {
+struct RowNumbers<'a> {
     case: &'a Case,
     summary: Option<&'a Summary>,
     /// Those just before the shear.
     variables: Option<Variables>,
 }
 
-impl Numbers<'_> {
+impl RowNumbers<'_> {
     fn friction(&self) -> Option<f64> {
         match self.case.contact.friction {
             Friction::Coefficient(mu) => Some(mu),
@@ -50,17 +50,17 @@ impl Numbers<'_> {
 }
 
 /// How a column of numbers is read.
-enum Read {
+enum ColumnKind {
     /// A count, written as a whole number.
-    Count(fn(&Numbers<'_>) -> Option<usize>),
+    Count(fn(&RowNumbers<'_>) -> Option<usize>),
     /// A number of [`decimal`].
-    Decimal(fn(&Numbers<'_>) -> Option<f64>),
+    Decimal(fn(&RowNumbers<'_>) -> Option<f64>),
 }
 
-use Read::{Count, Decimal};
+use ColumnKind::{Count, Decimal};
 
 /// A column by its name, and how it is read.
-type Column = (&'static str, Read);
+type Column = (&'static str, ColumnKind);
 
 const COLUMNS: [Column; 26] = [
     ("E", Decimal(|n| Some(n.case.material.youngs_modulus))),
@@ -196,7 +196,7 @@ impl Row {
         let summary = self.summary.as_ref();
         let state = summary.and_then(|s| Some((s.h0?, s.a0?, s.f_n0?)));
         let variables = state.and_then(|(h, a, force)| Some(Body::from_case(case).ok()?.variables(h, a, force)));
-        let numbers = Numbers { case, summary, variables };
+        let numbers = RowNumbers { case, summary, variables };
         COLUMNS.map(|(_, read)| match read {
             Count(read) => read(&numbers).map_or(String::new(), |count| count.to_string()),
             Decimal(read) => read(&numbers).filter(|x| x.is_finite()).map_or(String::new(), decimal),

@@ -114,7 +114,7 @@ pub(crate) fn run_on(
     let Concurrency { count, short } = Concurrency::of(study, &share, devices.is_there(), options.threads);
     let pools = pools(count)?;
     memory::side_by_side(count);
-    let Begun { study, mut rows, lock } = begin_share(directory, study, options, &share)?;
+    let PreparedStudy { study, mut rows, lock } = begin_share(directory, study, options, &share)?;
     let (study, lock) = (&study, &lock);
     let open = |row: &Row| match row.status {
         RowStatus::Done => false,
@@ -143,7 +143,7 @@ pub(crate) fn run_on(
         resume: options.resume,
         locks: Mutex::default(),
     };
-    let mut table = Table { study, directory, lock, rows, written: Instant::now(), took: Duration::ZERO };
+    let mut table = TableWriter { study, directory, lock, rows, written: Instant::now(), took: Duration::ZERO };
     let computed = compute(&simulator, (devices, options.precision), &pools, &order, &mut table);
     progress.end();
     // Another process may have computed other shares in the meantime.
@@ -194,7 +194,12 @@ impl Concurrency {
 
 /// Prepares the folder of a study of which a share is to be computed, and tidies after those cases
 /// of it that are done.
-fn begin_share(directory: &StudyDirectory, study: &Study, options: &Options, share: &[usize]) -> Result<Begun, StudyError> {
+fn begin_share(
+    directory: &StudyDirectory,
+    study: &Study,
+    options: &Options,
+    share: &[usize],
+) -> Result<PreparedStudy, StudyError> {
     let earlier = match (options.resume || options.shard.is_some(), options.force) {
         // Shares run into one directory, side by side or one after the other: what the others left
         // stays.
@@ -226,7 +231,7 @@ fn compute(
     on: (&Devices, PrecisionChoice),
     pools: &[ThreadPool],
     order: &[usize],
-    table: &mut Table<'_>,
+    table: &mut TableWriter<'_>,
 ) -> Result<(), StudyError> {
     let mut finished = |case: usize, result: Result<Summary, String>| {
         let fault = |what| format!("the program panicked: {what}. This is a fault of the program, please report it");
@@ -244,7 +249,7 @@ fn compute(
 }
 
 /// A study whose folder is prepared.
-pub(super) struct Begun {
+pub(super) struct PreparedStudy {
     /// With the names of the directories of its cases.
     pub study: Study,
     /// How they stand.
@@ -261,7 +266,7 @@ pub(super) fn begin(
     study: &Study,
     earlier: Earlier,
     adjust: impl FnOnce(&Study, &mut Vec<Row>) -> Result<(), StudyError>,
-) -> Result<Begun, StudyError> {
+) -> Result<PreparedStudy, StudyError> {
     let mut made = None;
     if !directory.root().exists() {
         let failed = |source| StudyError::Directory { dir: directory.root().to_owned(), what: "be created", source };
@@ -288,7 +293,7 @@ pub(super) fn begin(
                 names.join(", ")
             );
         }
-        Ok(Begun { study, rows, lock })
+        Ok(PreparedStudy { study, rows, lock })
     })();
     if let (Err(_), Some(root)) = (&begun, made) {
         // A folder in which there is something is not removed.
@@ -341,7 +346,7 @@ pub(super) fn read_rows(study: &Study, directory: &StudyDirectory) -> Vec<Row> {
 
 /// Writes `study.csv` as cases end, but spends no more than a few per cent of the time on it,
 /// however long it is.
-struct Table<'a> {
+struct TableWriter<'a> {
     study: &'a Study,
     directory: &'a StudyDirectory,
     lock: &'a TaskLock,
@@ -350,7 +355,7 @@ struct Table<'a> {
     took: Duration,
 }
 
-impl Table<'_> {
+impl TableWriter<'_> {
     /// Not where the folder was removed or moved in the meantime: a table without its cases would
     /// be of no use.
     fn write(&self) -> Result<(), StudyError> {

@@ -55,7 +55,7 @@ pub struct Sweep {
 }
 
 /// A key as it was found, before all of them are in order.
-struct Found {
+struct FoundKey {
     name: String,
     told: String,
     line: usize,
@@ -99,7 +99,7 @@ impl Sweep {
                 Axis { place, label, rows: rows.into_iter().map(numbered).collect() }
             })
             .collect();
-        Ok(Self { keys: found.into_iter().map(|Found { name, told, .. }| SweepKey { name, told }).collect(), axes })
+        Ok(Self { keys: found.into_iter().map(|FoundKey { name, told, .. }| SweepKey { name, told }).collect(), axes })
     }
 
     /// How many cases there are; `None` beyond `most`.
@@ -120,7 +120,7 @@ impl Sweep {
     }
 }
 
-fn read_grid(entry: &Entry, found: &mut Vec<Found>, axes: &mut Vec<FoundAxis>) -> Result<(), CaseError> {
+fn read_grid(entry: &Entry, found: &mut Vec<FoundKey>, axes: &mut Vec<FoundAxis>) -> Result<(), CaseError> {
     let mut keys = Vec::new();
     lists(entry, "grid", &mut keys)?;
     if keys.is_empty() {
@@ -144,7 +144,7 @@ fn read_grid(entry: &Entry, found: &mut Vec<Found>, axes: &mut Vec<FoundAxis>) -
     Ok(())
 }
 
-fn read_zip(entry: &Entry, found: &mut Vec<Found>, axes: &mut Vec<FoundAxis>) -> Result<(), CaseError> {
+fn read_zip(entry: &Entry, found: &mut Vec<FoundKey>, axes: &mut Vec<FoundAxis>) -> Result<(), CaseError> {
     let mut keys = Vec::new();
     lists(entry, "zip", &mut keys)?;
     keys.sort_by_key(|(_, place, _)| place.line());
@@ -168,7 +168,7 @@ fn read_zip(entry: &Entry, found: &mut Vec<Found>, axes: &mut Vec<FoundAxis>) ->
     Ok(())
 }
 
-fn read_list(entry: &Entry, found: &mut Vec<Found>, axes: &mut Vec<FoundAxis>) -> Result<(), CaseError> {
+fn read_list(entry: &Entry, found: &mut Vec<FoundKey>, axes: &mut Vec<FoundAxis>) -> Result<(), CaseError> {
     let mut rows = Vec::new();
     let mut keys: BTreeMap<String, Place> = BTreeMap::new();
     for (i, case) in groups(entry, "list", LISTED)?.into_iter().enumerate() {
@@ -287,11 +287,11 @@ fn refuse_twice(rows: &[Vec<(String, Entry)>], table: &str) -> Result<(), CaseEr
 }
 
 /// Takes a key, unless it is varied already.
-fn add(found: &mut Vec<Found>, name: String, told: String, place: &Place) -> Result<(), CaseError> {
+fn add(found: &mut Vec<FoundKey>, name: String, told: String, place: &Place) -> Result<(), CaseError> {
     if found.iter().any(|key| key.name == name) {
         return Err(not_allowed(place, &told, "is there twice", "each key once, in one of grid, zip and list"));
     }
-    found.push(Found { name, told, line: place.line() });
+    found.push(FoundKey { name, told, line: place.line() });
     Ok(())
 }
 

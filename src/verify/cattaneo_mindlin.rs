@@ -6,7 +6,7 @@
 //! at the equator: a/R is small, 0.01, and what the body between adds is taken off (`equator`), so
 //! that the closed forms are evaluated at the contact's own displacement.
 
-use super::equator::Equator;
+use super::equator::Compliances;
 use super::runner::Runner;
 use super::sphere::{History, RADIUS, YOUNGS_MODULUS, press, shear, sphere};
 use super::{Check, VerifyError};
@@ -114,7 +114,7 @@ fn equal_pair(runner: &mut Runner<'_>, mu: f64, elements: usize) -> Result<Vec<C
 }
 
 /// First loading: stiffness, forces, the stick zone, and F_N, which should not feel it.
-fn loading(history: &History, exact: &CattaneoMindlin, body: &Equator, elements: usize) -> Vec<Check> {
+fn loading(history: &History, exact: &CattaneoMindlin, body: &Compliances, elements: usize) -> Vec<Check> {
     const FORCE: &str = "beta = 0.02 and slip across the shear direction are worth 1 % together, the mesh another";
     let limit = MU * exact.normal_force;
     let mut checks = vec![Check::relative(
@@ -174,13 +174,13 @@ fn loading(history: &History, exact: &CattaneoMindlin, body: &Equator, elements:
 }
 
 /// The contact's own stiffness at the start of the shear.
-fn contact_stiffness(history: &History, body: &Equator) -> f64 {
+fn contact_stiffness(history: &History, body: &Compliances) -> f64 {
     let whole = history.segment(1).next().and_then(|row| row.k_t).unwrap_or(f64::NAN);
     whole / body.contact_shear(1.0, whole)
 }
 
 /// The way back from the last displacement of first loading, and sliding at its end.
-fn reversal(history: &History, exact: &CattaneoMindlin, body: &Equator) -> Vec<Check> {
+fn reversal(history: &History, exact: &CattaneoMindlin, body: &Compliances) -> Vec<Check> {
     let limit = MU * exact.normal_force;
     let contact = |row: &StepRecord| body.contact_shear(row.delta_t, row.f_t);
     let turning = contact(&history.end(1 + LOADING.len()));

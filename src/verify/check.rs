@@ -5,7 +5,7 @@ use serde::{Serialize, Serializer};
 /// What a computed number is held against.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum Reference {
+pub enum HeldAgainst {
     /// A value.
     Value(f64),
     /// Anywhere from the first number to the second; an infinite end is open.
@@ -62,7 +62,7 @@ pub struct Check {
     /// The computed number.
     pub ours: f64,
     /// What it is held against.
-    pub reference: Reference,
+    pub reference: HeldAgainst,
     /// What the error is measured by.
     pub scale: Scale,
     /// Largest error that passes; `None`: reported without a verdict.
@@ -81,7 +81,7 @@ impl Check {
         tolerance: f64,
         because: &'static str,
     ) -> Self {
-        let (reference, scale) = (Reference::Value(reference), Scale::Relative);
+        let (reference, scale) = (HeldAgainst::Value(reference), Scale::Relative);
         Self { check, what: what.into(), ours, reference, scale, tolerance: Some(tolerance), because }
     }
 
@@ -100,13 +100,13 @@ impl Check {
         tolerance: f64,
         because: &'static str,
     ) -> Self {
-        let (reference, scale) = (Reference::Range(low, high), Scale::Relative);
+        let (reference, scale) = (HeldAgainst::Range(low, high), Scale::Relative);
         Self { check, what: what.into(), ours, reference, scale, tolerance: Some(tolerance), because }
     }
 
     /// A number that is reported for itself.
     pub fn information(check: &'static str, what: impl Into<String>, ours: f64, because: &'static str) -> Self {
-        Self { check, what: what.into(), ours, reference: Reference::Nothing, scale: Scale::By(1.0), tolerance: None, because }
+        Self { check, what: what.into(), ours, reference: HeldAgainst::Nothing, scale: Scale::By(1.0), tolerance: None, because }
     }
 
     /// The same row without a verdict.
@@ -118,12 +118,12 @@ impl Check {
     /// inside), over the scale.
     pub fn error(&self) -> f64 {
         let (difference, end) = match self.reference {
-            Reference::Value(value) => (self.ours - value, value),
-            Reference::Range(low, _) if self.ours < low => (self.ours - low, low),
-            Reference::Range(_, high) if self.ours > high => (self.ours - high, high),
-            Reference::Range(..) if self.ours.is_nan() => (f64::NAN, 1.0),
-            Reference::Range(..) => return 0.0,
-            Reference::Nothing => return f64::NAN,
+            HeldAgainst::Value(value) => (self.ours - value, value),
+            HeldAgainst::Range(low, _) if self.ours < low => (self.ours - low, low),
+            HeldAgainst::Range(_, high) if self.ours > high => (self.ours - high, high),
+            HeldAgainst::Range(..) if self.ours.is_nan() => (f64::NAN, 1.0),
+            HeldAgainst::Range(..) => return 0.0,
+            HeldAgainst::Nothing => return f64::NAN,
         };
         match self.scale {
             Scale::Relative => difference / end.abs(),

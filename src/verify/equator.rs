@@ -21,7 +21,7 @@ use crate::simulation::record::StepRecord;
 
 /// The two compliances of the body, over 1/(E R).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Equator {
+pub struct Compliances {
     /// Normal: the body is stiffer than the rest of a half-space.
     pub normal: f64,
     /// Tangential: it is softer.
@@ -33,7 +33,7 @@ const RADII: [f64; 2] = [0.01 * RADIUS, 0.04 * RADIUS];
 /// Shear over a, small enough that no point comes off or touches.
 const SHEAR: f64 = 1e-5;
 
-impl Equator {
+impl Compliances {
     /// Measures both for one Poisson's ratio, with so many elements along the contact radius and
     /// what `follow` makes of a case.
     ///
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn finds_the_compliances_that_were_put_in() {
-        let (sphere, body) = (ball(0.3), Equator { normal: 0.2, tangential: 1.5 });
+        let (sphere, body) = (ball(0.3), Compliances { normal: 0.2, tangential: 1.5 });
         let unit = YOUNGS_MODULUS * RADIUS;
         let contact = |a: f64| {
             let h = a * a / RADIUS;
@@ -134,7 +134,7 @@ mod tests {
             let pressed = StepRecord { h, f_n, a, ..StepRecord::default() };
             (pressed, StepRecord { delta_t, f_t, ..pressed })
         };
-        let found = Equator::between(&sphere, RADII.map(contact));
+        let found = Compliances::between(&sphere, RADII.map(contact));
         assert!((found.tangential / body.tangential - 1.0).abs() < 1e-9, "{found:?}");
         assert!((found.normal / body.normal - 1.0).abs() < 0.05, "{found:?}");
         assert!((found.contact_indentation(1e-4, 0.0), found.contact_shear(1e-6, 0.0)) == (1e-4, 1e-6));

@@ -6,7 +6,7 @@
 //! hardening keeps all that elastic: the curve is not Hertz's, for the surface has taken the
 //! plane's shape.
 
-use super::equator::Equator;
+use super::equator::Compliances;
 use super::runner::Runner;
 use super::sphere::{History, RADIUS, YOUNGS_MODULUS, press, shear, sphere};
 use super::{Check, VerifyError};
@@ -99,7 +99,7 @@ pub fn checks(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
 }
 
 /// (h, F_N) while unloading, h of the contact itself and rising.
-fn unloading_curve(history: &History, body: &Equator) -> Vec<(f64, f64)> {
+fn unloading_curve(history: &History, body: &Compliances) -> Vec<(f64, f64)> {
     let rows = std::iter::once(history.end(0)).chain(history.segment(1).copied());
     let mut curve: Vec<(f64, f64)> = rows.map(|row| (body.contact_indentation(row.h, row.f_n), row.f_n)).collect();
     curve.reverse();

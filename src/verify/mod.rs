@@ -44,9 +44,9 @@ mod spence;
 
 use std::time::{Duration, Instant};
 
-pub use check::{Check, Reference, Scale, Verdict};
+pub use check::{Check, HeldAgainst, Scale, Verdict};
 pub use error::VerifyError;
-pub use report::Report;
+pub use report::VerificationReport;
 pub use runner::{BackendFactory, Fineness, Runner};
 
 /// A group of checks that share their cases.

@@ -19,7 +19,7 @@
 //! (ours with 16 elements along the largest contact). Friction holds the surface back: the contact
 //! is 3 to 5 % smaller and 4 to 9 % harder. Without it ours are 0 to 2 % below the models.
 
-use super::equator::Equator;
+use super::equator::Compliances;
 use super::runner::Runner;
 use super::sphere::{RADIUS, YOUNGS_MODULUS, press, sphere};
 use super::{Check, VerifyError};
@@ -104,7 +104,7 @@ fn against_models(yield_stress: f64, row: &StepRecord) -> [Check; 2] {
 }
 
 /// The secant from the end of the press to a little below.
-fn unloading_slope(yield_stress: f64, body: &Equator, top: &StepRecord, below: &StepRecord) -> Check {
+fn unloading_slope(yield_stress: f64, body: &Compliances, top: &StepRecord, below: &StepRecord) -> Check {
     let h = |row: &StepRecord| body.contact_indentation(row.h, row.f_n);
     let lambda = johnson::lambda(&BALL, yield_stress, top.a);
     Check::relative(
@@ -152,7 +152,7 @@ mod tests {
 
     #[test]
     fn slope_of_a_hertz_contact_is_exact() {
-        let body = Equator { normal: 0.2, tangential: 0.0 };
+        let body = Compliances { normal: 0.2, tangential: 0.0 };
         let row = |contact_h: f64| {
             let f_n = hertz::force(&BALL, contact_h);
             let h = contact_h - 0.2 * f_n / (YOUNGS_MODULUS * RADIUS);

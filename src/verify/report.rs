@@ -6,7 +6,7 @@ use super::{Check, FamilyReport, Fineness, Runner, Verdict};
 
 /// The result of a verification.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Report {
+pub struct VerificationReport {
     /// Version of the program.
     pub version: &'static str,
     /// How finely the cases were meshed.
@@ -24,7 +24,7 @@ pub struct Report {
 
 /// A row as JSON has it: with its error and verdict.
 #[derive(Serialize)]
-struct Row<'a> {
+struct CheckRow<'a> {
     #[serde(flatten)]
     check: &'a Check,
     error: f64,
@@ -32,10 +32,10 @@ struct Row<'a> {
 }
 
 fn rows<S: serde::Serializer>(checks: &[Check], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(checks.iter().map(|check| Row { check, error: check.error(), verdict: check.verdict() }))
+    serializer.collect_seq(checks.iter().map(|check| CheckRow { check, error: check.error(), verdict: check.verdict() }))
 }
 
-impl Report {
+impl VerificationReport {
     /// Appends a family.
     pub fn add(&mut self, family: FamilyReport) {
         self.wall_s += family.took.as_secs_f64();
@@ -72,12 +72,12 @@ impl Report {
 mod tests {
     use super::*;
 
-    fn report(wrong: f64) -> Report {
+    fn report(wrong: f64) -> VerificationReport {
         let good = Check::relative("hertz", "F_N", 1.001, 1.0, 0.01, "because");
         let other = Check::range("models", "c^2", 2.0, [1.0, f64::INFINITY], 0.0, "");
         let info = Check::information("equator", "c", 7.0, "");
         let suspect = Check::relative("hertz", "a", 1.0, wrong, 0.01, "");
-        Report { checks: vec![good, other, info, suspect], ..Report::default() }
+        VerificationReport { checks: vec![good, other, info, suspect], ..VerificationReport::default() }
     }
 
     #[test]

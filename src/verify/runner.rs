@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::VerifyError;
-use super::equator::Equator;
+use super::equator::Compliances;
 use super::sphere::History;
 use crate::case::Case;
 use crate::compute::{CaseModel, Compute, ComputeError, Description};
@@ -33,7 +33,7 @@ pub struct Runner<'a> {
     backend: &'a mut BackendFactory<'a>,
     /// How finely the cases are meshed.
     pub level: Fineness,
-    equator: Vec<(f64, Equator)>,
+    equator: Vec<(f64, Compliances)>,
     computed_on: Option<Description>,
 }
 
@@ -60,12 +60,12 @@ impl<'a> Runner<'a> {
     ///
     /// # Errors
     /// As those of [`Runner::follow`].
-    pub fn equator(&mut self, nu: f64) -> Result<Equator, VerifyError> {
+    pub fn equator(&mut self, nu: f64) -> Result<Compliances, VerifyError> {
         if let Some((_, known)) = self.equator.iter().find(|(at, _)| *at == nu) {
             return Ok(*known);
         }
         let elements = self.elements(8);
-        let measured = Equator::measure(nu, elements, |case| self.follow(case))?;
+        let measured = Compliances::measure(nu, elements, |case| self.follow(case))?;
         self.equator.push((nu, measured));
         Ok(measured)
     }

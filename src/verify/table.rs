@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Check, Reference, Report, Verdict};
+use super::{Check, HeldAgainst, Verdict, VerificationReport};
 
 /// A number with about four digits, in the notation that is shorter.
 fn number(x: f64) -> String {
@@ -13,13 +13,13 @@ fn number(x: f64) -> String {
     }
 }
 
-fn reference(reference: &Reference) -> String {
+fn reference(reference: &HeldAgainst) -> String {
     match *reference {
-        Reference::Value(value) => number(value),
-        Reference::Range(low, f64::INFINITY) => format!(">= {}", number(low)),
-        Reference::Range(f64::NEG_INFINITY, high) => format!("<= {}", number(high)),
-        Reference::Nothing => "-".to_owned(),
-        Reference::Range(low, high) => format!("{} to {}", number(low), number(high)),
+        HeldAgainst::Value(value) => number(value),
+        HeldAgainst::Range(low, f64::INFINITY) => format!(">= {}", number(low)),
+        HeldAgainst::Range(f64::NEG_INFINITY, high) => format!("<= {}", number(high)),
+        HeldAgainst::Nothing => "-".to_owned(),
+        HeldAgainst::Range(low, high) => format!("{} to {}", number(low), number(high)),
     }
 }
 
@@ -67,9 +67,9 @@ pub fn reasons(checks: &[Check]) -> String {
 }
 
 /// The verdict on all rows in a line.
-pub fn summary(report: &Report) -> String {
+pub fn summary(report: &VerificationReport) -> String {
     let [pass, fail, information] = [Verdict::Pass, Verdict::Fail, Verdict::Information].map(|verdict| report.count(verdict));
-    let Report { device, precision, wall_s, .. } = report;
+    let VerificationReport { device, precision, wall_s, .. } = report;
     format!("{pass} passed, {fail} failed, {information} for information, in {wall_s:.0} s on {device}, {precision}")
 }
 

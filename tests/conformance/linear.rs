@@ -7,8 +7,8 @@ use asperity::internals::compute::{CaseModel, Compute};
 use asperity::internals::conformance::batch;
 use asperity::internals::conformance::kernels::every_level_has_the_cpus_matrix_and_its_v_cycle;
 use asperity::internals::conformance::linear::{
-    CASES, System, asked, meets_tolerances_as_the_cpu_does, meets_tolerances_down_to_one_element, mesh, models, solve, solved,
-    system,
+    CASES, TestSystem, asked, meets_tolerances_as_the_cpu_does, meets_tolerances_down_to_one_element, mesh, models, solve,
+    solved, system,
 };
 use asperity::material::Elasticity;
 use rand::{RngExt, SeedableRng};
@@ -24,7 +24,7 @@ fn numbers(seed: u64) -> Box<dyn FnMut(f64, f64) -> f64> {
 /// The same of one case, from a guess.
 fn solve_from(
     backend: &mut dyn Compute,
-    (case, system): (usize, &System),
+    (case, system): (usize, &TestSystem),
     tolerance: f64,
     relative_to_guess: bool,
     guess: Vec<f64>,
@@ -78,9 +78,9 @@ fn a_solution_has_the_same_bits_whatever_is_solved_beside_it() {
     let Some(context) = context(name, Precision::F32) else { return };
     let mesh = mesh();
     let models = models(&mesh);
-    let mut systems: Vec<System> = (0..CASES).map(|case| system(numbers, case, &models, false)).collect();
+    let mut systems: Vec<TestSystem> = (0..CASES).map(|case| system(numbers, case, &models, false)).collect();
     let mut gpu = Gpu::<f32>::new(context, models.clone()).unwrap();
-    let all: Vec<(usize, &System)> = systems.iter().enumerate().collect();
+    let all: Vec<(usize, &TestSystem)> = systems.iter().enumerate().collect();
     let together = bits(&solve(&mut gpu, &all, 1e-3));
     assert!(bits(&solve(&mut gpu, &all, 1e-3)) == together, "again");
     for case in 0..CASES {
@@ -89,7 +89,7 @@ fn a_solution_has_the_same_bits_whatever_is_solved_beside_it() {
     let turned = bits(&solve(&mut gpu, &[(2, &systems[2]), (0, &systems[0])], 1e-3));
     assert!(turned[0] == together[2] && turned[1] == together[0]);
     systems[0].rhs.fill(0.0);
-    let all: Vec<(usize, &System)> = systems.iter().enumerate().collect();
+    let all: Vec<(usize, &TestSystem)> = systems.iter().enumerate().collect();
     let beside = solve(&mut gpu, &all, 1e-3);
     assert!(beside[0].0.iter().all(|x| *x == 0.0) && beside[0].1.iterations == 0);
     assert!(bits(&beside)[1..] == together[1..]);
@@ -102,7 +102,7 @@ fn a_dispatch_takes_different_numbers_of_sides_and_guesses() {
     let Some(context) = context(name, Precision::F32) else { return };
     let mesh = mesh();
     let models = models(&mesh);
-    let systems: Vec<System> = (0..CASES).map(|case| system(numbers, case, &models, false)).collect();
+    let systems: Vec<TestSystem> = (0..CASES).map(|case| system(numbers, case, &models, false)).collect();
     let mut gpu = Gpu::<f32>::new(context, models).unwrap();
     // By case: the sides' guesses, in 1e-6 everywhere; 0 is no guess.
     let guesses: [&[f64]; CASES] = [&[0.0, 1.0], &[0.0], &[-1.0]];
@@ -185,7 +185,7 @@ fn a_hard_system_a_guess_and_what_cannot_be_solved() {
     let n = 3 * flat[0].mesh.nodes.len();
     let (zeros, fixed) = (vec![0.0; n], vec![false; n]);
     let side = Side { rhs: zeros.clone(), tolerance: 0.1, relative_to_guess: false, expected: 1, guess: zeros.clone() };
-    let system = linear::System { displacement: zeros.into(), rows: Vec::new(), fixed, sides: vec![side] };
+    let system = linear::SolveRequest { displacement: zeros.into(), rows: Vec::new(), fixed, sides: vec![side] };
     assert!(!gpu.about().solves && solved(&mut gpu, vec![(0, system)])[0].solutions.is_empty());
 }
 
@@ -198,7 +198,7 @@ fn a_cycle_that_is_full_begins_anew() {
     let mesh = mesh();
     let mut models = models(&mesh);
     models[1].material.elasticity = Elasticity::new(1.0, 0.497);
-    let systems: Vec<System> = (0..2).map(|case| system(numbers, case, &models, true)).collect();
+    let systems: Vec<TestSystem> = (0..2).map(|case| system(numbers, case, &models, true)).collect();
     let mut gpu = Gpu::<f32>::new(context, models).unwrap();
     let alone = bits(&solve(&mut gpu, &[(0, &systems[0])], 2e-3));
     let both = solve(&mut gpu, &[(0, &systems[0]), (1, &systems[1])], 2e-3);

@@ -7,7 +7,7 @@
 
 use asperity::internals::compute::gpu::GpuError;
 use asperity::internals::compute::gpu::source::{Assembled, Precision};
-use asperity::internals::compute::gpu::validate::{Checked, validate};
+use asperity::internals::compute::gpu::validate::{ValidSource, validate};
 use naga::proc::TypeResolution;
 use naga::valid::FunctionInfo;
 use naga::{BinaryOperator, Expression, Function, Handle, MathFunction, Module, ScalarKind, Span, TypeInner};
@@ -54,7 +54,7 @@ pub struct Finding {
 /// # Errors
 /// [`GpuError::Shader`] if it does not compile at all.
 pub fn lint(source: &Assembled) -> Result<Vec<Finding>, GpuError> {
-    let Checked { module, info } = validate(source)?;
+    let ValidSource { module, info } = validate(source)?;
     let mut found: Vec<(usize, Rule)> = named_precisions(source);
     let functions = module.functions.iter().map(|(handle, function)| (function, &info[handle]));
     let entries = module.entry_points.iter().enumerate().map(|(i, entry)| (&entry.function, info.get_entry_point(i)));
@@ -80,7 +80,7 @@ pub fn lint(source: &Assembled) -> Result<Vec<Finding>, GpuError> {
 
 /// Bytes of local variables in each function, largest first: drivers spill them to memory, and
 /// compile for minutes where they are large.
-pub fn private_bytes(checked: &Checked) -> Vec<(String, u32)> {
+pub fn private_bytes(checked: &ValidSource) -> Vec<(String, u32)> {
     let module = &checked.module;
     let functions = module.functions.iter().map(|(_, f)| (f.name.clone().unwrap_or_default(), f));
     let entries = module.entry_points.iter().map(|e| (e.name.clone(), &e.function));

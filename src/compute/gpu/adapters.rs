@@ -1,7 +1,7 @@
 //! Which adapters there are, and which one is taken.
 
 use super::error::GpuError;
-use super::needs::{self, Limits};
+use super::needs::{self, KernelLimits};
 use std::fmt;
 
 /// The environment variable that selects an adapter by a part of its name (case does not matter).
@@ -82,7 +82,7 @@ pub struct Adapter {
     /// Longest array, bytes.
     pub max_buffer: u64,
     /// What a kernel may have of it.
-    pub limits: Limits,
+    pub limits: KernelLimits,
     /// Workgroups in one direction of a dispatch.
     pub max_workgroups: u32,
 }
@@ -100,7 +100,7 @@ impl Adapter {
             timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
             max_binding: limits.max_storage_buffer_binding_size,
             max_buffer: limits.max_buffer_size,
-            limits: Limits::of(&limits),
+            limits: KernelLimits::of(&limits),
             max_workgroups: limits.max_compute_workgroups_per_dimension,
         }
     }

@@ -14,7 +14,7 @@ use super::resident::{FULL_STICK, HANGS_AT, HAS_HANGING, OCTANT_AT, SOME_HANG};
 use super::source::Precision;
 use super::validate::validate;
 use super::{material, scratch};
-use crate::compute::{Fault, Outcome};
+use crate::compute::{Evaluated, Fault};
 use crate::contact::coulomb::Status;
 use crate::element::hex8::Invalid;
 use crate::linalg::layout::NOWHERE;
@@ -168,7 +168,7 @@ fn what_else_is_decoded_is_what_kernels_say() {
     };
     // As `refuse` of point.wgsl codes them, at point 3 of element 5.
     let outcome = |by: u32, is_not_finite: u32| outcomes(&[32 * 5 + by + 2 * 3 + is_not_finite])[0];
-    let invalid = |what| Outcome::Invalid(Fault::of(5, what));
+    let invalid = |what| Evaluated::Invalid(Fault::of(5, what));
     assert_eq!(outcome(by_kinematics, 0), invalid(Invalid::Inverted(3)));
     assert_eq!(outcome(by_kinematics, 1), invalid(Invalid::NotFinite(3)));
     assert_eq!(outcome(by_material, 0), invalid(Invalid::Material(3, Refusal::Inverted)));

@@ -12,16 +12,16 @@ use super::dispatch::{Dispatch, Evaluation, status_of};
 use super::error::GpuError;
 use super::layout::{HISTORY, ROWS, STATE, TRIAL};
 use super::linear::pack::Packed;
-use super::linear::parts::Part;
-use super::linear::solver::Linear;
+use super::linear::parts::SolvePart;
+use super::linear::solver::SlotSolver;
 use super::source::Precision;
 use crate::compute::call::not_asked;
 use crate::compute::cpu::Cpu;
 use crate::compute::handle::{at, at_contact};
 use crate::compute::iterate::Keeps;
-use crate::compute::linear::{Solved, System};
+use crate::compute::linear::{SolveRequest, Solved};
 use crate::compute::{
-    About, Answer, Blocks, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Outcome,
+    About, Answer, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Evaluated, TangentBlocks,
 };
 use crate::contact::coulomb::{CONTACT_WEIGHT, Rows};
 use crate::contact::plane::slip;
@@ -126,7 +126,7 @@ impl<R: DeviceReal> Gpu<R> {
     ///
     /// # Errors
     /// [`ComputeError::Device`], also where linear systems are not solved on the device.
-    pub fn repeat_part(&self, part: Part, cases: &[usize], times: usize) -> Result<(), ComputeError> {
+    pub fn repeat_part(&self, part: SolvePart, cases: &[usize], times: usize) -> Result<(), ComputeError> {
         let missing = || ComputeError::Device("the linear systems are not solved on the device".to_owned());
         let solver = self.solver().ok_or_else(missing)?;
         for dispatch in self.schedule(cases.iter().copied()) {
@@ -141,7 +141,7 @@ impl<R: DeviceReal> Gpu<R> {
     }
 
     /// What solves linear systems on the device, if anything does.
-    pub fn solver(&self) -> Option<&Linear> {
+    pub fn solver(&self) -> Option<&SlotSolver> {
         self.batch.as_ref().and_then(|batch| batch.linear.as_ref())
     }
 
@@ -190,11 +190,11 @@ impl<R: DeviceReal> Gpu<R> {
             let Call::Tangent { blocks, .. } = &mut calls[i].1 else { return Err(not_asked()) };
             let empty = blocks.none();
             let mut blocks = std::mem::replace(blocks, empty).resized(batch.plan.source.len());
-            if outcome == Outcome::Valid {
+            if outcome == Evaluated::Valid {
                 let upper = |component, block| upper.at((slot * 9 + component) * count + block);
                 match &mut blocks {
-                    Blocks::Double(blocks) => mirror(&batch.plan.source, upper, blocks),
-                    Blocks::Single(blocks) => mirror(&batch.plan.source, upper, blocks),
+                    TangentBlocks::Double(blocks) => mirror(&batch.plan.source, upper, blocks),
+                    TangentBlocks::Single(blocks) => mirror(&batch.plan.source, upper, blocks),
                 }
             }
             answers.push(Answer::Tangent { blocks, outcome });
@@ -225,7 +225,7 @@ impl<R: DeviceReal> Gpu<R> {
     fn solve(&mut self, dispatch: &Dispatch, calls: &mut [(usize, Call)]) -> Result<Vec<Answer>, ComputeError> {
         let increments = self.increments(dispatch, calls)?;
         let system = |&i: &usize| if let (_, Call::Solve(system)) = &calls[i] { Some(&**system) } else { None };
-        let systems: Vec<&System> = dispatch.requests.iter().filter_map(system).collect();
+        let systems: Vec<&SolveRequest> = dispatch.requests.iter().filter_map(system).collect();
         let packed = Packed::new(&systems);
         let (outcomes, answers) = self.batch()?.linear(dispatch, &increments, &packed.rows, &packed.fixed, &packed.sides)?;
         let of_slots = systems.iter().zip(outcomes).enumerate();
@@ -240,7 +240,7 @@ impl<R: DeviceReal> Gpu<R> {
         let mut answers = Vec::with_capacity(outcomes.len());
         for (slot, (&i, outcome)) in dispatch.requests.iter().zip(outcomes).enumerate() {
             let mut of_state = Energies::default();
-            if outcome == Outcome::Valid {
+            if outcome == Evaluated::Valid {
                 let (case, displacement) = (calls[i].0, calls[i].1.displacement());
                 let batch = self.batch()?;
                 batch.keep(dispatch, slot, &self.models[case], displacement)?;

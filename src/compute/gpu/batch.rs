@@ -15,15 +15,15 @@ use super::iterate::arrays::Kept;
 use super::iterate::kernels::Iterates;
 use super::layout::{HISTORY, NEXT_HISTORY, ROWS, STATE};
 use super::linear::plan::Plan;
-use super::linear::solver::{Answers, Linear, Right};
-use super::pipelines::Recorder;
-use super::resident::{Connectivity, Resident, Sizes};
-use super::room::Room;
-use super::scratch::{Dimensions, Kernels, Scratch};
+use super::linear::solver::{Right, SideSolutions, SlotSolver};
+use super::pipelines::KernelList;
+use super::resident::{BatchSizes, Connectivity, Resident};
+use super::room::DeviceRoom;
+use super::scratch::{Dimensions, EvaluationKernels, Scratch};
 use super::source::Precision;
 use super::tangents::Tangents;
 use crate::compute::gather::GatherPlan;
-use crate::compute::{CaseModel, ComputeError, Outcome};
+use crate::compute::{CaseModel, ComputeError, Evaluated};
 
 /// The arrays and kernels of a batch.
 #[derive(Debug)]
@@ -32,7 +32,7 @@ pub struct Batch<R> {
     connectivity: Connectivity,
     /// Where each block of the pattern comes from.
     pub(super) plan: BlockPlan,
-    pub(super) groups: Vec<(Resident<R>, Kernels)>,
+    pub(super) groups: Vec<(Resident<R>, EvaluationKernels)>,
     pub(super) scratch: Scratch<R>,
     slots: usize,
     /// The increments that the slots have.
@@ -40,7 +40,7 @@ pub struct Batch<R> {
     /// Tangents.
     pub(super) tangents: Tangents<R>,
     /// How linear systems are solved, if the mesh has a hierarchy.
-    pub(super) linear: Option<Linear>,
+    pub(super) linear: Option<SlotSolver>,
     /// Newton's iterates, where they are asked for and linear systems are solved.
     pub(super) iterates: Option<Iterates<R>>,
     /// What the user should know of it.
@@ -95,7 +95,7 @@ impl<R: DeviceReal> Batch<R> {
             .iter()
             .map(|c| Resident::new(&context, sizes, c.first, of(c.first, c.count)))
             .collect::<Result<Vec<_>, _>>()?;
-        let mut room = Room::new::<R>(&context, sizes, models.len(), in_single);
+        let mut room = DeviceRoom::new::<R>(&context, sizes, models.len(), in_single);
         room.place_linear(linear_plan)?;
         room.place_iterates(parts.iterates)?;
         let kept = residents
@@ -106,16 +106,16 @@ impl<R: DeviceReal> Batch<R> {
         let slots = room.slots(chunks.iter().map(|c| c.count).max().unwrap_or(1))?;
         let scratch = Scratch::new(&context, sizes, (slots, room.pools()))?;
         let tangents = Tangents::new(&context, &connectivity, &scratch, &residents, models, (slots, in_single))?;
-        let Room { linear, notes, .. } = room;
+        let DeviceRoom { linear, notes, .. } = room;
         let linear = linear
             .map(|plan| match &tangents {
-                Tangents::Same(set) => Linear::new(&context, &plan, (slots, &scratch.pools), set.blocks()),
-                Tangents::Single(single) => Linear::new(&context, &plan, (slots, &scratch.pools), single.set().blocks()),
+                Tangents::Same(set) => SlotSolver::new(&context, &plan, (slots, &scratch.pools), set.blocks()),
+                Tangents::Single(single) => SlotSolver::new(&context, &plan, (slots, &scratch.pools), single.set().blocks()),
             })
             .transpose()?;
-        let groups: Vec<(Resident<R>, Kernels)> = residents
+        let groups: Vec<(Resident<R>, EvaluationKernels)> = residents
             .into_iter()
-            .map(|r| Kernels::new(&context, &connectivity, &r, &scratch).map(|k| (r, k)))
+            .map(|r| EvaluationKernels::new(&context, &connectivity, &r, &scratch).map(|k| (r, k)))
             .collect::<Result<_, GpuError>>()?;
         let iterates = match &linear {
             Some(linear) if !kept.is_empty() => {
@@ -134,7 +134,7 @@ impl<R: DeviceReal> Batch<R> {
     }
 
     /// Sizes of a case.
-    pub fn sizes(&self) -> Sizes {
+    pub fn sizes(&self) -> BatchSizes {
         self.connectivity.sizes
     }
 
@@ -197,7 +197,7 @@ impl<R: DeviceReal> Batch<R> {
         evaluation: Evaluation,
         buffer: &StorageBuffer<T>,
         out: &mut [T],
-    ) -> Result<Vec<Outcome>, GpuError> {
+    ) -> Result<Vec<Evaluated>, GpuError> {
         let mut list = self.context.record();
         self.append(dispatch, evaluation, &mut list)?;
         let mut first = vec![0u32; dispatch.cases.len()];
@@ -206,7 +206,7 @@ impl<R: DeviceReal> Batch<R> {
     }
 
     /// Appends the kernels of an evaluation.
-    pub(super) fn append(&self, dispatch: &Dispatch, evaluation: Evaluation, list: &mut Recorder<'_>) -> Result<(), GpuError> {
+    pub(super) fn append(&self, dispatch: &Dispatch, evaluation: Evaluation, list: &mut KernelList<'_>) -> Result<(), GpuError> {
         let (kernels, sizes, slots) = (&self.groups[dispatch.group].1, self.sizes(), dispatch.cases.len());
         if evaluation == Evaluation::Contact {
             return list.dispatch(&kernels.contact, sizes.contact_points, slots);
@@ -243,7 +243,7 @@ impl<R: DeviceReal> Batch<R> {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn internal_force(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Outcome>, Vec<R>), GpuError> {
+    pub fn internal_force(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Evaluated>, Vec<R>), GpuError> {
         self.begin_element(dispatch, increments)?;
         let (sizes, slots) = (self.sizes(), dispatch.cases.len());
         let mut force = vec![R::ZERO; slots * 3 * sizes.nodes];
@@ -254,7 +254,7 @@ impl<R: DeviceReal> Batch<R> {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn tangent(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Outcome>, UpperBlocks<R>), GpuError> {
+    pub fn tangent(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Evaluated>, UpperBlocks<R>), GpuError> {
         self.begin_element(dispatch, increments)?;
         Ok(match &self.tangents {
             Tangents::Same(set) => {
@@ -274,7 +274,7 @@ impl<R: DeviceReal> Batch<R> {
         &self,
         dispatch: &Dispatch,
         buffer: &StorageBuffer<T>,
-    ) -> Result<(Vec<Outcome>, Vec<T>), GpuError> {
+    ) -> Result<(Vec<Evaluated>, Vec<T>), GpuError> {
         let (slots, of_slot) = (dispatch.cases.len(), 9 * self.sizes().blocks);
         let mut blocks = vec![T::ZERO; slots * of_slot];
         let at_a_time = if self.solves() { 1 } else { slots };
@@ -292,7 +292,7 @@ impl<R: DeviceReal> Batch<R> {
     }
 
     /// The tangents at increments, and the solutions of the systems of each side with them (see
-    /// [`Linear::update`] and [`Linear::solve`]), in one submission a side.
+    /// [`SlotSolver::update`] and [`SlotSolver::solve`]), in one submission a side.
     ///
     /// # Errors
     /// The device's fault.
@@ -303,7 +303,7 @@ impl<R: DeviceReal> Batch<R> {
         rows: &[f32],
         fixed: &[u32],
         sides: &[Right],
-    ) -> Result<(Vec<Outcome>, Vec<Answers>), GpuError> {
+    ) -> Result<(Vec<Evaluated>, Vec<SideSolutions>), GpuError> {
         let (context, slots) = (&self.context, dispatch.cases.len());
         let nothing = || GpuError::Length { what: "the levels of the mesh's hierarchy".into(), expected: 1, given: 0 };
         let linear = self.linear.as_ref().ok_or_else(nothing)?;
@@ -343,7 +343,7 @@ impl<R: DeviceReal> Batch<R> {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn update(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Outcome>, Vec<R>), GpuError> {
+    pub fn update(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Evaluated>, Vec<R>), GpuError> {
         self.begin_element(dispatch, increments)?;
         let (sizes, slots) = (self.sizes(), dispatch.cases.len());
         let mut energies = vec![R::ZERO; slots * 3 * sizes.elements];
@@ -366,7 +366,7 @@ impl<R: DeviceReal> Batch<R> {
     /// Appends the copies that make the states in `slot` those of a case of the group.
     pub(super) fn append_keep(
         &self,
-        list: &mut Recorder<'_>,
+        list: &mut KernelList<'_>,
         resident: &Resident<R>,
         slot: usize,
         case: usize,

@@ -85,7 +85,7 @@ pub struct StorageBuffer<T> {
 
 /// A part of an array that is to be read back after a list of kernels.
 #[derive(Debug)]
-pub struct Read<'a> {
+pub struct ReadBack<'a> {
     raw: &'a wgpu::Buffer,
     what: &'a str,
     /// First byte.
@@ -124,7 +124,7 @@ impl<T> StorageBuffer<T> {
     ///
     /// # Errors
     /// [`GpuError::Length`] if `out` reaches beyond the end.
-    pub fn read<'a>(&'a self, offset: usize, out: &'a mut [T]) -> Result<Read<'a>, GpuError>
+    pub fn read<'a>(&'a self, offset: usize, out: &'a mut [T]) -> Result<ReadBack<'a>, GpuError>
     where
         T: Pod,
     {
@@ -132,7 +132,7 @@ impl<T> StorageBuffer<T> {
             return Err(GpuError::Length { what: self.what.clone(), expected: self.len, given: offset + out.len() });
         }
         let offset = self.first + (offset * size_of::<T>()) as u64;
-        Ok(Read { raw: &self.raw, what: &self.what, offset, out: bytemuck::cast_slice_mut(out) })
+        Ok(ReadBack { raw: &self.raw, what: &self.what, offset, out: bytemuck::cast_slice_mut(out) })
     }
 
     /// Another array in the same memory, for numbers that are not needed at the same time: no
@@ -358,10 +358,10 @@ impl GpuContext {
         &self,
         (ahead, mut encoder): (Vec<wgpu::CommandBuffer>, wgpu::CommandEncoder),
         dispatches: u64,
-        reads: &mut [Read<'_>],
+        reads: &mut [ReadBack<'_>],
     ) -> Result<wgpu::SubmissionIndex, GpuError> {
         let what = reads.first().map_or("nothing", |read| read.what).to_owned();
-        let padded = |read: &Read<'_>| (read.out.len() as u64).next_multiple_of(16);
+        let padded = |read: &ReadBack<'_>| (read.out.len() as u64).next_multiple_of(16);
         let bytes = reads.iter().map(padded).sum::<u64>();
         let mut slot = self.staging();
         let staging = self.staging_for(&mut slot, bytes)?;

@@ -1,7 +1,7 @@
 //! Kernels that are compiled.
 
 use super::kernel::Kernel;
-use super::reflect::Interface;
+use super::reflect::KernelInterface;
 use super::source::Precision;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
@@ -12,7 +12,7 @@ pub struct Pipeline {
     pub(super) raw: wgpu::ComputePipeline,
     pub(super) layout: wgpu::BindGroupLayout,
     pub(super) kernel: &'static Kernel,
-    pub(super) interface: &'static Interface,
+    pub(super) interface: &'static KernelInterface,
     pub(super) precision: Precision,
 }
 

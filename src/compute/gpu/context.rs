@@ -8,7 +8,7 @@ use super::health::DeviceHealth;
 use super::memory::{MemoryBudget, Staging};
 use super::meter::Meter;
 use super::needs;
-use super::pace::Pace;
+use super::pace::ListPace;
 use super::profile::Profiling;
 use super::source::Precision;
 use crate::compute::traffic::Traffic;
@@ -42,7 +42,7 @@ pub struct GpuContext {
     pub(super) pipelines: Arc<PipelineCache>,
     pub(super) staging: Mutex<Option<Staging>>,
     pub(super) meter: Meter,
-    pub(super) pace: Pace,
+    pub(super) pace: ListPace,
     /// A kernel that is left out.
     fault: Option<String>,
     pub(super) profiling: Option<Profiling>,
@@ -128,7 +128,7 @@ impl GpuContext {
             pipelines: Arc::default(),
             staging: Mutex::new(None),
             meter: Meter::default(),
-            pace: Pace::default(),
+            pace: ListPace::default(),
             fault: std::env::var(FAULT_VARIABLE).ok().filter(|_| cfg!(debug_assertions)),
             profiling: None,
             checked: cfg!(debug_assertions),
@@ -201,7 +201,7 @@ impl GpuContext {
     /// The same with lists of kernels sent in pieces where the last one took longer than this,
     /// instead of half a second. For tests of that.
     pub fn with_longest_submission(mut self, longest: Duration) -> Self {
-        self.pace = Pace::with(longest);
+        self.pace = ListPace::with(longest);
         self
     }
 

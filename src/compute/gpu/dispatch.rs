@@ -1,6 +1,6 @@
 //! What a batch evaluates, for which of its cases, and how it went.
 
-use crate::compute::{Fault, Outcome};
+use crate::compute::{Evaluated, Fault};
 use crate::contact::coulomb::Status;
 use crate::element::hex8::Invalid;
 use crate::material::Refusal;
@@ -43,10 +43,10 @@ fn fault(code: u32) -> Fault {
 }
 
 /// How each slot went, from the first invalid point of each.
-pub(super) fn outcomes(first: &[u32]) -> Vec<Outcome> {
+pub(super) fn outcomes(first: &[u32]) -> Vec<Evaluated> {
     let outcome = |&code: &u32| match code {
-        u32::MAX => Outcome::Valid,
-        code => Outcome::Invalid(fault(code)),
+        u32::MAX => Evaluated::Valid,
+        code => Evaluated::Invalid(fault(code)),
     };
     first.iter().map(outcome).collect()
 }

@@ -1,8 +1,8 @@
 //! A kernel: files of WGSL with one entry point.
 
 use super::error::GpuError;
-use super::reflect::Interface;
-use super::source::{Assembled, Precision, Source};
+use super::reflect::KernelInterface;
+use super::source::{Assembled, Precision, ShaderSource};
 use std::sync::OnceLock;
 
 /// A kernel: one entry point and what it needs.
@@ -11,13 +11,13 @@ pub struct Kernel {
     /// Name, unique; also the name of the entry point.
     pub name: &'static str,
     /// Its files after the prelude, in order.
-    pub sources: &'static [Source],
-    interface: OnceLock<Result<Interface, GpuError>>,
+    pub sources: &'static [ShaderSource],
+    interface: OnceLock<Result<KernelInterface, GpuError>>,
 }
 
 impl Kernel {
     /// The kernel `name`, made of these files after the prelude.
-    pub const fn new(name: &'static str, sources: &'static [Source]) -> Self {
+    pub const fn new(name: &'static str, sources: &'static [ShaderSource]) -> Self {
         Self { name, sources, interface: OnceLock::new() }
     }
 
@@ -31,7 +31,7 @@ impl Kernel {
     ///
     /// # Errors
     /// [`GpuError::Shader`] if its source does not compile.
-    pub fn interface(&self) -> Result<&Interface, GpuError> {
-        self.interface.get_or_init(|| Interface::of(&self.assemble(Precision::F64))).as_ref().map_err(Clone::clone)
+    pub fn interface(&self) -> Result<&KernelInterface, GpuError> {
+        self.interface.get_or_init(|| KernelInterface::of(&self.assemble(Precision::F64))).as_ref().map_err(Clone::clone)
     }
 }

@@ -12,7 +12,7 @@ use super::context::GpuContext;
 use crate::compute::cpu::Cpu;
 use crate::compute::handle::at;
 use crate::compute::iterate::{Ask, Keeps, Plate, Request};
-use crate::compute::{About, Answer, Call, CaseModel, Compute, ComputeError, Description, Outcome};
+use crate::compute::{About, Answer, Call, CaseModel, Compute, ComputeError, Description, Evaluated};
 
 /// Evaluates a batch in f64 on the CPU, and its tangents and linear systems in f32 on a device.
 pub struct Mixed {
@@ -45,7 +45,7 @@ impl Mixed {
         let keeps = self.single.about().keeps != Keeps::Nothing;
         let before: Vec<Vec<f64>> = cases.iter().filter(|_| keeps).map(|&case| self.single.committed[case].clone()).collect();
         let answers = self.residual.call(calls)?;
-        let is_valid = |answer: &Answer| matches!(answer, Answer::Commit { outcome: Outcome::Valid, .. });
+        let is_valid = |answer: &Answer| matches!(answer, Answer::Commit { outcome: Evaluated::Valid, .. });
         for (&case, _) in cases.iter().zip(&answers).filter(|(_, answer)| is_valid(answer)) {
             at(&mut self.single, case).restore(at(&mut self.residual, case).state()?)?;
         }

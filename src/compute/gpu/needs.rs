@@ -12,7 +12,7 @@ use std::sync::OnceLock;
 
 /// What a kernel may have of an adapter, or takes of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Limits {
+pub struct KernelLimits {
     /// Arrays that it sees at once.
     pub storage_buffers: u64,
     /// Blocks of parameters that it sees at once.
@@ -25,7 +25,7 @@ pub struct Limits {
     pub shared_bytes: u64,
 }
 
-impl Limits {
+impl KernelLimits {
     /// Those of them that wgpu has.
     pub fn of(limits: &wgpu::Limits) -> Self {
         Self {
@@ -51,15 +51,15 @@ pub(super) fn asked_for(adapter: &wgpu::Limits) -> wgpu::Limits {
 
 /// Limits of an adapter on which every kernel runs, for tests: WebGPU's defaults.
 #[cfg(test)]
-pub(super) const ENOUGH: Limits =
-    Limits { storage_buffers: 8, uniform_buffers: 12, uniform_bytes: 64 << 10, threads: 256, shared_bytes: 16 << 10 };
+pub(super) const ENOUGH: KernelLimits =
+    KernelLimits { storage_buffers: 8, uniform_buffers: 12, uniform_bytes: 64 << 10, threads: 256, shared_bytes: 16 << 10 };
 
 /// The most that any kernel takes of one limit.
 #[derive(Clone, Copy, Debug)]
 pub struct Need {
     /// Of what, in words.
     pub what: &'static str,
-    /// The limit's place among [`Limits`].
+    /// The limit's place among [`KernelLimits`].
     of: OfLimits,
     /// How much.
     pub needed: u64,
@@ -69,7 +69,7 @@ pub struct Need {
 
 impl Need {
     /// What an adapter has of it.
-    pub fn has(&self, limits: &Limits) -> u64 {
+    pub fn has(&self, limits: &KernelLimits) -> u64 {
         (self.of)(limits)
     }
 }
@@ -81,7 +81,7 @@ impl fmt::Display for Need {
 }
 
 /// One of the limits.
-type OfLimits = fn(&Limits) -> u64;
+type OfLimits = fn(&KernelLimits) -> u64;
 
 /// The limits in words.
 const KINDS: [(&str, OfLimits); 5] = [
@@ -94,10 +94,10 @@ const KINDS: [(&str, OfLimits); 5] = [
 
 /// What a kernel takes; nothing of a source that is not valid, which is an error when it is
 /// compiled.
-fn taken(kernel: &Kernel) -> Limits {
-    let Ok(interface) = kernel.interface() else { return Limits::default() };
+fn taken(kernel: &Kernel) -> KernelLimits {
+    let Ok(interface) = kernel.interface() else { return KernelLimits::default() };
     let uniform = interface.variables.iter().filter(|variable| variable.kind == Binding::Uniform).count();
-    Limits {
+    KernelLimits {
         storage_buffers: (interface.variables.len() - uniform) as u64,
         uniform_buffers: uniform as u64,
         uniform_bytes: interface.uniform_bytes,
@@ -107,7 +107,7 @@ fn taken(kernel: &Kernel) -> Limits {
 }
 
 fn most(kernels: &[&'static Kernel]) -> Vec<Need> {
-    let taken: Vec<(&'static str, Limits)> = kernels.iter().map(|kernel| (kernel.name, taken(kernel))).collect();
+    let taken: Vec<(&'static str, KernelLimits)> = kernels.iter().map(|kernel| (kernel.name, taken(kernel))).collect();
     let of_kind = |&(what, of): &(&'static str, OfLimits)| {
         let (kernel, limits) = taken.iter().rev().max_by_key(|(_, limits)| of(limits))?;
         Some(Need { what, of, needed: of(limits), kernel })
@@ -122,7 +122,7 @@ pub fn needs() -> &'static [Need] {
 }
 
 /// The first need that an adapter does not meet, in words; none if it meets all.
-pub fn unmet(limits: &Limits) -> Option<String> {
+pub fn unmet(limits: &KernelLimits) -> Option<String> {
     let need = needs().iter().find(|need| need.has(limits) < need.needed)?;
     Some(format!("needs {need}, the adapter has {}", need.has(limits)))
 }
@@ -130,11 +130,11 @@ pub fn unmet(limits: &Limits) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compute::gpu::source::Source;
+    use crate::compute::gpu::source::ShaderSource;
 
     static SHARING: Kernel = Kernel::new(
         "sharing",
-        &[Source {
+        &[ShaderSource {
             path: "tests",
             text: "
 struct Block { a: vec4<u32>, b: real }
@@ -152,7 +152,7 @@ fn sharing(@builtin(local_invocation_index) i: u32) {
 
     #[test]
     fn a_kernels_needs_are_those_of_its_source() {
-        let expected = Limits { storage_buffers: 1, uniform_buffers: 1, uniform_bytes: 32, threads: 32, shared_bytes: 256 };
+        let expected = KernelLimits { storage_buffers: 1, uniform_buffers: 1, uniform_bytes: 32, threads: 32, shared_bytes: 256 };
         assert_eq!(taken(&SHARING), expected);
         let needs = most(&[&SHARING]);
         assert!(needs.len() == KINDS.len() && needs.iter().all(|need| need.kernel == "sharing"));
@@ -161,7 +161,7 @@ fn sharing(@builtin(local_invocation_index) i: u32) {
     #[test]
     fn a_device_is_asked_for_the_defaults_and_long_arrays() {
         let defaults = wgpu::Limits::defaults();
-        assert_eq!(Limits::of(&defaults), ENOUGH);
+        assert_eq!(KernelLimits::of(&defaults), ENOUGH);
         let large = wgpu::Limits {
             max_storage_buffers_per_shader_stage: 1000,
             max_compute_workgroup_storage_size: 96 << 10,
@@ -171,7 +171,7 @@ fn sharing(@builtin(local_invocation_index) i: u32) {
         };
         let asked = asked_for(&large);
         assert_eq!((asked.max_storage_buffer_binding_size, asked.max_buffer_size), (2 << 30, 4 << 30));
-        assert_eq!(Limits::of(&asked), ENOUGH);
+        assert_eq!(KernelLimits::of(&asked), ENOUGH);
         let small = wgpu::Limits { max_uniform_buffer_binding_size: 16 << 10, ..defaults };
         assert_eq!(asked_for(&small).max_uniform_buffer_binding_size, 16 << 10);
     }
@@ -183,11 +183,11 @@ fn sharing(@builtin(local_invocation_index) i: u32) {
             assert!(need.needed > 0 && KERNELS.iter().any(|kernel| kernel.name == need.kernel), "{need}");
         }
         let short = [
-            (Limits { storage_buffers: 7, ..ENOUGH }, "storage buffers in one kernel (", "has 7"),
-            (Limits { uniform_buffers: 0, ..ENOUGH }, "uniform buffers in one kernel (", "has 0"),
-            (Limits { uniform_bytes: 16, ..ENOUGH }, "bytes in one uniform buffer (", "has 16"),
-            (Limits { threads: 128, ..ENOUGH }, "threads in one workgroup (", "has 128"),
-            (Limits { shared_bytes: 64, ..ENOUGH }, "bytes of memory in one workgroup (", "has 64"),
+            (KernelLimits { storage_buffers: 7, ..ENOUGH }, "storage buffers in one kernel (", "has 7"),
+            (KernelLimits { uniform_buffers: 0, ..ENOUGH }, "uniform buffers in one kernel (", "has 0"),
+            (KernelLimits { uniform_bytes: 16, ..ENOUGH }, "bytes in one uniform buffer (", "has 16"),
+            (KernelLimits { threads: 128, ..ENOUGH }, "threads in one workgroup (", "has 128"),
+            (KernelLimits { shared_bytes: 64, ..ENOUGH }, "bytes of memory in one workgroup (", "has 64"),
         ];
         for (limits, need, has) in short {
             let said = unmet(&limits).unwrap();

@@ -11,20 +11,20 @@ const LONGEST: Duration = Duration::from_millis(500);
 
 /// What the last list took, and how many pieces came of that.
 #[derive(Debug)]
-pub(super) struct Pace {
+pub(super) struct ListPace {
     longest: Duration,
     /// Of the last list that was waited for: its kernels, and what it took.
     last: Mutex<(u64, Duration)>,
     pieces: AtomicU64,
 }
 
-impl Default for Pace {
+impl Default for ListPace {
     fn default() -> Self {
         Self::with(LONGEST)
     }
 }
 
-impl Pace {
+impl ListPace {
     /// Nothing is known yet; lists that take no longer than this are sent whole.
     pub fn with(longest: Duration) -> Self {
         Self { longest, last: Mutex::default(), pieces: AtomicU64::new(0) }
@@ -67,7 +67,7 @@ mod tests {
 
     #[test]
     fn a_list_is_cut_where_the_last_one_took_too_long() {
-        let pace = Pace::default();
+        let pace = ListPace::default();
         assert_eq!(pace.most(), None);
         pace.took(100, Duration::from_millis(500));
         assert_eq!(pace.most(), None);
@@ -80,6 +80,6 @@ mod tests {
         assert_eq!(pace.most(), Some(1));
         pace.took(100, Duration::from_millis(1));
         assert_eq!(pace.most(), None);
-        assert_eq!(Pace::with(Duration::ZERO).of_part().longest, Duration::ZERO);
+        assert_eq!(ListPace::with(Duration::ZERO).of_part().longest, Duration::ZERO);
     }
 }

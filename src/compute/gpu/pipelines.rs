@@ -1,7 +1,7 @@
 //! Compiling kernels once, and running them.
 
 use super::arguments::Argument;
-use super::buffers::{Read, StorageBuffer};
+use super::buffers::{ReadBack, StorageBuffer};
 use super::compiled::Pipeline;
 use super::context::GpuContext;
 use super::error::GpuError;
@@ -33,7 +33,7 @@ impl Bound {
 }
 
 /// Kernels to be run one after the other, each seeing what those before it wrote.
-pub struct Recorder<'a> {
+pub struct KernelList<'a> {
     context: &'a GpuContext,
     encoder: wgpu::CommandEncoder,
     /// What goes ahead of that, each in a submission of its own.
@@ -146,8 +146,8 @@ impl GpuContext {
     /// Starts a list of kernels to be run in one submission, or in several where the last list took
     /// too long for a driver's patience. They are sent one right after the other, once the list is
     /// complete: what is uploaded meanwhile comes before all of them.
-    pub fn record(&self) -> Recorder<'_> {
-        Recorder {
+    pub fn record(&self) -> KernelList<'_> {
+        KernelList {
             context: self,
             encoder: self.encoder(),
             ahead: Vec::new(),
@@ -171,7 +171,7 @@ impl GpuContext {
     }
 }
 
-impl Recorder<'_> {
+impl KernelList<'_> {
     /// Appends one kernel: `threads` along x (rounded up to whole workgroups) for each of `cases`
     /// along y.
     ///
@@ -186,7 +186,7 @@ impl Recorder<'_> {
     /// threads.
     ///
     /// # Errors
-    /// As [`Recorder::dispatch`].
+    /// As [`KernelList::dispatch`].
     pub fn dispatch_as_told(
         &mut self,
         bound: &Bound,
@@ -291,7 +291,7 @@ impl Recorder<'_> {
     /// # Errors
     /// [`GpuError::Stale`], [`GpuError::Lost`], [`GpuError::Timeout`], [`GpuError::Rejected`]: then
     /// no numbers come back at all.
-    pub fn submit_and_read(mut self, reads: &mut [Read<'_>]) -> Result<(), GpuError> {
+    pub fn submit_and_read(mut self, reads: &mut [ReadBack<'_>]) -> Result<(), GpuError> {
         if let Some(stamps) = &self.stamps {
             stamps.resolve(&mut self.encoder);
         }

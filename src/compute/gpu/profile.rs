@@ -76,7 +76,7 @@ pub(super) struct Profile {
     /// Seconds of a tick.
     pub period: f64,
     pub sums: Mutex<Sums>,
-    pub free: Mutex<Vec<Set>>,
+    pub free: Mutex<Vec<Queries>>,
 }
 
 /// What a part of a device has of a profile.
@@ -89,7 +89,7 @@ pub(super) struct Profiling {
 
 /// Queries, and the way of their answers to the host.
 #[derive(Debug)]
-pub(super) struct Set {
+pub(super) struct Queries {
     pub queries: wgpu::QuerySet,
     pub resolved: wgpu::Buffer,
     pub mapped: wgpu::Buffer,
@@ -117,7 +117,7 @@ impl Moved {
 /// The timestamps of a list of kernels that is being made, or was sent.
 #[derive(Debug, Default)]
 pub(super) struct Stamps {
-    pub sets: Vec<Set>,
+    pub sets: Vec<Queries>,
     pub dispatches: Vec<((&'static str, Precision), Option<u64>)>,
 }
 

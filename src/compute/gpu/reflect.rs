@@ -4,7 +4,7 @@
 use super::arguments::Argument;
 use super::error::{ArgumentFlaw, GpuError};
 use super::source::Assembled;
-use super::validate::{Checked, validate};
+use super::validate::{ValidSource, validate};
 use naga::valid::GlobalUse;
 use naga::{AddressSpace, StorageAccess};
 
@@ -36,7 +36,7 @@ pub struct Variable {
 
 /// What a kernel takes.
 #[derive(Clone, Debug)]
-pub struct Interface {
+pub struct KernelInterface {
     /// The variables that its entry point uses, in the order of their numbers.
     pub variables: Vec<Variable>,
     /// What files that it shares with others declare and its entry point does not use.
@@ -49,13 +49,13 @@ pub struct Interface {
     pub shared_bytes: u64,
 }
 
-impl Interface {
+impl KernelInterface {
     /// That of the one entry point of a source.
     ///
     /// # Errors
     /// [`GpuError::Shader`] if it does not compile, or has none.
     pub fn of(source: &Assembled) -> Result<Self, GpuError> {
-        let Checked { module, info } = validate(source)?;
+        let ValidSource { module, info } = validate(source)?;
         let Some(entry) = module.entry_points.first() else {
             return Err(GpuError::Shader { place: source.place(0), message: "there is no entry point".to_owned() });
         };
@@ -119,7 +119,7 @@ impl Interface {
 #[cfg(test)]
 mod tests {
     use super::super::kernel::Kernel;
-    use super::super::source::{Precision, Source};
+    use super::super::source::{Precision, ShaderSource};
     use super::*;
 
     const TEXT: &str = "
@@ -134,7 +134,7 @@ fn moving(@builtin(local_invocation_index) i: u32) {
     to[i] = shared_numbers[i];
 }
 ";
-    static MOVING: Kernel = Kernel::new("moving", &[Source { path: "tests", text: TEXT }]);
+    static MOVING: Kernel = Kernel::new("moving", &[ShaderSource { path: "tests", text: TEXT }]);
 
     /// The places of arguments with these names among the kernel's variables.
     fn places(names: &[&'static str]) -> Result<Vec<&'static str>, (String, ArgumentFlaw)> {
@@ -151,7 +151,7 @@ fn moving(@builtin(local_invocation_index) i: u32) {
 
     #[test]
     fn an_entry_point_takes_what_it_uses() {
-        let Interface { variables, unused, workgroup, uniform_bytes, shared_bytes } = MOVING.interface().unwrap();
+        let KernelInterface { variables, unused, workgroup, uniform_bytes, shared_bytes } = MOVING.interface().unwrap();
         let of = |name: &str, binding, kind, reads, writes| Variable { name: name.to_owned(), binding, kind, reads, writes };
         let expected = [
             of("shape", 0, Binding::Uniform, true, false),
@@ -160,8 +160,8 @@ fn moving(@builtin(local_invocation_index) i: u32) {
         ];
         assert_eq!(variables, &expected);
         assert_eq!((&unused[..], *workgroup, *uniform_bytes, *shared_bytes), (&["spare".to_owned()][..], 8, 16, 64));
-        let no_entry = Assembled::with_prelude(Precision::F32, &[Source { path: "tests", text: "const A = 1;" }]);
-        assert!(matches!(Interface::of(&no_entry), Err(GpuError::Shader { .. })));
+        let no_entry = Assembled::with_prelude(Precision::F32, &[ShaderSource { path: "tests", text: "const A = 1;" }]);
+        assert!(matches!(KernelInterface::of(&no_entry), Err(GpuError::Shader { .. })));
     }
 
     #[test]

@@ -10,7 +10,7 @@ use super::layout::{COORDINATES, HISTORY, ON_SYMMETRY_PLANE, PARAMETERS, STATE};
 use super::material::flatten;
 use crate::compute::{CaseModel, ComputeError};
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction};
-use crate::element::hex8::{Geometry, NODES, QUADRATURE_POINTS};
+use crate::element::hex8::{ElementGeometry, NODES, QUADRATURE_POINTS};
 use crate::material::Material;
 use crate::mesh::{Hanging, Mesh};
 
@@ -33,7 +33,7 @@ pub(super) const HAS_HANGING: u32 = 1 << 31;
 
 /// Sizes that all cases of a batch share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sizes {
+pub struct BatchSizes {
     /// Nodes.
     pub nodes: usize,
     /// Elements.
@@ -46,7 +46,7 @@ pub struct Sizes {
     pub blocks: usize,
 }
 
-impl Sizes {
+impl BatchSizes {
     /// Quadrature points of a case.
     pub fn points(&self) -> usize {
         QUADRATURE_POINTS * self.elements
@@ -87,7 +87,7 @@ impl Sizes {
 #[derive(Debug)]
 pub struct Connectivity {
     /// Sizes of a case.
-    pub sizes: Sizes,
+    pub sizes: BatchSizes,
     /// Nodes that each element names, and which of its corners hang, as `hanging.wgsl` reads them.
     pub element_nodes: StorageBuffer<u32>,
     /// Starts of the nodes' lists of elements.
@@ -116,7 +116,7 @@ impl Connectivity {
         let plate = std::iter::once(mesh.plate_nodes.len() as u32).chain(mesh.plate_nodes.iter().copied());
         let surface: Vec<u32> = mesh.contact_nodes.iter().map(of_point).chain(plate).collect();
         Ok(Self {
-            sizes: Sizes {
+            sizes: BatchSizes {
                 nodes: mesh.nodes.len(),
                 elements: mesh.elements.len(),
                 own_elements: mesh.own_elements(),
@@ -164,7 +164,7 @@ impl<R: DeviceReal> Resident<R> {
     ///
     /// # Errors
     /// [`ComputeError::InvertedMesh`]; what [`GpuContext::array`] says.
-    pub fn new(context: &GpuContext, sizes: Sizes, first: usize, models: &[CaseModel]) -> Result<Self, ComputeError> {
+    pub fn new(context: &GpuContext, sizes: BatchSizes, first: usize, models: &[CaseModel]) -> Result<Self, ComputeError> {
         let count = models.len();
         let mut meshes: Vec<&Arc<Mesh>> = Vec::new();
         let geometry_of: Vec<u32> = models
@@ -217,7 +217,7 @@ impl<R: DeviceReal> Resident<R> {
     pub fn replace(
         &mut self,
         context: &GpuContext,
-        sizes: Sizes,
+        sizes: BatchSizes,
         index: usize,
         models: &[CaseModel],
     ) -> Result<Option<usize>, ComputeError> {
@@ -243,7 +243,7 @@ impl<R: DeviceReal> Resident<R> {
     }
 
     /// The geometry of a case, if no other case has it too, or one that no case has.
-    fn free_geometry(&self, index: usize, sizes: Sizes) -> Option<usize> {
+    fn free_geometry(&self, index: usize, sizes: BatchSizes) -> Option<usize> {
         let others = |geometry: u32| self.geometry_of.iter().enumerate().all(|(case, &g)| case == index || g != geometry);
         let all = self.geometries.len() / sizes.geometry_numbers().max(1);
         let own = self.geometry_of[index];
@@ -257,7 +257,7 @@ impl<R: DeviceReal> Resident<R> {
     pub fn geometry<T: DeviceReal>(
         &self,
         context: &GpuContext,
-        sizes: Sizes,
+        sizes: BatchSizes,
         models: &[CaseModel],
     ) -> Result<StorageBuffer<T>, ComputeError> {
         let count = self.geometry_of.iter().max().map_or(0, |last| *last + 1);
@@ -274,7 +274,7 @@ impl<R: DeviceReal> Resident<R> {
     pub fn set_displacement(
         &self,
         context: &GpuContext,
-        sizes: Sizes,
+        sizes: BatchSizes,
         index: usize,
         mesh: &Mesh,
         displacement: &[f64],
@@ -290,7 +290,7 @@ impl<R: DeviceReal> Resident<R> {
     }
 
     /// Sends the heights of the contact points of the group's case `index`, undeformed.
-    fn set_heights(&self, context: &GpuContext, sizes: Sizes, index: usize, mesh: &Mesh) -> Result<(), GpuError> {
+    fn set_heights(&self, context: &GpuContext, sizes: BatchSizes, index: usize, mesh: &Mesh) -> Result<(), GpuError> {
         let heights: Vec<R> = mesh.contact_nodes.iter().map(|&n| R::of(mesh.nodes[n as usize][2])).collect();
         context.upload_at(&self.gaps, (2 * index + 1) * sizes.contact_points, &heights)
     }
@@ -335,7 +335,7 @@ fn friction<R: DeviceReal>(friction: Friction<f64>) -> R {
 /// As [`GpuContext::array`].
 pub fn send_materials<T: DeviceReal>(
     context: &GpuContext,
-    sizes: Sizes,
+    sizes: BatchSizes,
     models: &[CaseModel],
 ) -> Result<StorageBuffer<T>, GpuError> {
     let numbers = flatten(&materials::<T>(sizes, models));
@@ -352,7 +352,7 @@ pub fn send_materials<T: DeviceReal>(
 /// The device's fault.
 pub fn replace_materials<T: DeviceReal>(
     context: &GpuContext,
-    sizes: Sizes,
+    sizes: BatchSizes,
     models: &[CaseModel],
     to: &StorageBuffer<T>,
 ) -> Result<bool, GpuError> {
@@ -365,7 +365,7 @@ pub fn replace_materials<T: DeviceReal>(
 }
 
 /// The materials of cases, then those of their opponents, if they have any that deform.
-fn materials<T: DeviceReal>(sizes: Sizes, models: &[CaseModel]) -> Vec<Material<T>> {
+fn materials<T: DeviceReal>(sizes: BatchSizes, models: &[CaseModel]) -> Vec<Material<T>> {
     let own = models.iter().map(|model| &model.material);
     let opponents = models.iter().map(|model| model.opponent.as_ref().unwrap_or(&model.material));
     own.chain(opponents).take(sizes.bodies() * models.len()).map(Material::cast).collect()
@@ -375,7 +375,7 @@ fn materials<T: DeviceReal>(sizes: Sizes, models: &[CaseModel]) -> Vec<Material<
 /// after the other, on the device.
 fn send_geometry<R: DeviceReal>(
     context: &GpuContext,
-    sizes: Sizes,
+    sizes: BatchSizes,
     meshes: &[&Arc<Mesh>],
 ) -> Result<StorageBuffer<R>, ComputeError> {
     let geometries =
@@ -392,7 +392,7 @@ fn send_geometry<R: DeviceReal>(
 /// [`ComputeError::InvertedMesh`], and nothing written; the device's fault.
 pub fn write_geometry<R: DeviceReal>(
     context: &GpuContext,
-    sizes: Sizes,
+    sizes: BatchSizes,
     geometries: &StorageBuffer<R>,
     (index, mesh): (usize, &Mesh),
 ) -> Result<(), ComputeError> {
@@ -409,7 +409,7 @@ fn flatten_geometry<R: DeviceReal>(mesh: &Mesh) -> Result<Vec<R>, ComputeError> 
     let (coordinates, volume) = numbers.split_at_mut(COORDINATES * elements);
     for e in 0..elements {
         let positions = mesh.corners(e);
-        let geometry = Geometry::<R>::new(&positions)
+        let geometry = ElementGeometry::<R>::new(&positions)
             .map_err(|invalid| ComputeError::InvertedMesh { element: e, point: invalid.point() })?;
         volume[QUADRATURE_POINTS * e..][..QUADRATURE_POINTS].copy_from_slice(&geometry.volume.0);
         for (a, position) in positions.iter().enumerate() {

@@ -7,13 +7,13 @@ use super::iterate::arrays::{Kept, Told};
 use super::layout::{BLOCKS_OF_SLOTS, MOST_SLOTS, NEXT_HISTORY, ROWS, STRESS};
 use super::linear::plan::Plan;
 use super::pools::PoolBytes;
-use super::resident::Sizes;
+use super::resident::BatchSizes;
 use super::scratch::Scratch;
 use super::source::Precision;
 use super::tangents::{Bytes, Tangents};
 
 /// Bytes of a batch, and what it has for that.
-pub struct Room<'a> {
+pub struct DeviceRoom<'a> {
     context: &'a GpuContext,
     cases: usize,
     in_f32: bool,
@@ -36,9 +36,9 @@ pub struct Room<'a> {
     pub notes: Vec<String>,
 }
 
-impl<'a> Room<'a> {
+impl<'a> DeviceRoom<'a> {
     /// That of so many cases, without linear systems and iterates.
-    pub fn new<R: DeviceReal>(context: &'a GpuContext, sizes: Sizes, cases: usize, in_single: bool) -> Self {
+    pub fn new<R: DeviceReal>(context: &'a GpuContext, sizes: BatchSizes, cases: usize, in_single: bool) -> Self {
         let numbers = |numbers: usize| (numbers * size_of::<R>()) as u64;
         let tangents = Tangents::<R>::bytes(sizes, in_single);
         Self {

@@ -8,7 +8,7 @@ use super::kernel::Kernel;
 use super::layout::{COORDINATES, MOST_SLOTS, NEXT_HISTORY, ROWS, STATE, STRESS, TRIAL};
 use super::pipelines::Bound;
 use super::pools::{PoolBytes, Pools};
-use super::resident::{Connectivity, Resident, Sizes};
+use super::resident::{BatchSizes, Connectivity, Resident};
 use super::shader_sources::{
     CONTACT_POINTS, GATHER_NODE_FORCE, HEX8_BEGIN_STEP, HEX8_ENERGIES, HEX8_INTERNAL_FORCE, HEX8_JACOBIAN, HEX8_UPDATE,
 };
@@ -50,7 +50,7 @@ pub struct Scratch<R> {
 }
 
 impl<R: DeviceReal> Scratch<R> {
-    pub fn new(context: &GpuContext, sizes: Sizes, (slots, pools): (usize, PoolBytes)) -> Result<Self, GpuError> {
+    pub fn new(context: &GpuContext, sizes: BatchSizes, (slots, pools): (usize, PoolBytes)) -> Result<Self, GpuError> {
         let points = sizes.points();
         let pools = Pools::new(context, pools, slots)?;
         let zeros = |what: &str, per_slot: usize| Ok::<_, GpuError>(context.zeros(what, slots * per_slot)?.each(slots));
@@ -71,7 +71,7 @@ impl<R: DeviceReal> Scratch<R> {
     }
 
     /// Bytes of a slot, but for the pools.
-    pub fn bytes(sizes: Sizes) -> u64 {
+    pub fn bytes(sizes: BatchSizes) -> u64 {
         let all = sizes.trial_numbers() + 3 * sizes.nodes + 3 * sizes.elements;
         let contact = (TRIAL + ROWS + 1) * sizes.contact_points;
         ((all + contact + 16) * size_of::<R>()) as u64
@@ -80,7 +80,7 @@ impl<R: DeviceReal> Scratch<R> {
 
 /// The kernels bound to a group of cases.
 #[derive(Debug)]
-pub struct Kernels {
+pub struct EvaluationKernels {
     pub(super) jacobian: Bound,
     pub(super) internal_force: Bound,
     pub(super) node_force: Bound,
@@ -90,7 +90,7 @@ pub struct Kernels {
     pub(super) contact: Bound,
 }
 
-impl Kernels {
+impl EvaluationKernels {
     pub fn new<R: DeviceReal>(c: &GpuContext, mesh: &Connectivity, r: &Resident<R>, s: &Scratch<R>) -> Result<Self, GpuError> {
         let shape = args! { dimensions: s.dimensions, active_cases: s.active };
         let (unknowns, points) = (3 * mesh.sizes.nodes, mesh.sizes.points());

@@ -1,43 +1,43 @@
 //! The kernels of elements, materials and contact: of which files each is made, in which order.
 
 use super::kernel::Kernel;
-use super::source::{Source, source};
+use super::source::{ShaderSource, source};
 
 /// Elementary functions.
-pub const MATH: Source = source!("math.wgsl");
+pub const MATH: ShaderSource = source!("math.wgsl");
 /// Vectors, matrices and symmetric tensors.
-pub const TENSOR: Source = source!("tensor.wgsl");
+pub const TENSOR: ShaderSource = source!("tensor.wgsl");
 
 /// Flow stress, slope, plastic work and the scalar return of every hardening law.
-pub const HARDENING: Source = source!("material/hardening.wgsl");
+pub const HARDENING: ShaderSource = source!("material/hardening.wgsl");
 /// The elastic half of the material, and its parameters by case.
-pub const MATERIAL: Source = source!("material/material.wgsl");
+pub const MATERIAL: ShaderSource = source!("material/material.wgsl");
 /// Return mapping and tangent at a point.
-pub const J2: Source = source!("material/j2.wgsl");
+pub const J2: ShaderSource = source!("material/j2.wgsl");
 /// Flow to second order in the step.
-pub const MULTISTEP: Source = source!("material/multistep.wgsl");
-const RETURN_MAPPING_POINTS: Source = source!("material/return_mapping.wgsl");
+pub const MULTISTEP: ShaderSource = source!("material/multistep.wgsl");
+const RETURN_MAPPING_POINTS: ShaderSource = source!("material/return_mapping.wgsl");
 
 /// The shape of a batch.
-pub const BATCH: Source = source!("batch.wgsl");
+pub const BATCH: ShaderSource = source!("batch.wgsl");
 /// Geometry and kinematics of the element.
-pub const HEX8: Source = source!("element/hex8.wgsl");
+pub const HEX8: ShaderSource = source!("element/hex8.wgsl");
 /// Corners that hang.
-pub const HANGING: Source = source!("element/hanging.wgsl");
+pub const HANGING: ShaderSource = source!("element/hanging.wgsl");
 /// The material of an element.
-pub const BODY: Source = source!("element/body.wgsl");
+pub const BODY: ShaderSource = source!("element/body.wgsl");
 /// A quadrature point at a trial displacement.
-pub const PAIRS: Source = source!("element/pairs.wgsl");
-const POINT: Source = source!("element/point.wgsl");
+pub const PAIRS: ShaderSource = source!("element/pairs.wgsl");
+const POINT: ShaderSource = source!("element/point.wgsl");
 /// What it is evaluated at, for those who only read that.
-const TRIALS: Source = source!("element/trials.wgsl");
+const TRIALS: ShaderSource = source!("element/trials.wgsl");
 /// Gap and slip.
-pub const PLANE: Source = source!("contact/plane.wgsl");
+pub const PLANE: ShaderSource = source!("contact/plane.wgsl");
 /// The contact conditions of a point.
-pub const COULOMB: Source = source!("contact/coulomb.wgsl");
+pub const COULOMB: ShaderSource = source!("contact/coulomb.wgsl");
 
 /// How they are stored.
-pub const ROWS: Source = source!("contact/rows.wgsl");
+pub const ROWS: ShaderSource = source!("contact/rows.wgsl");
 
 /// The return mapping at every point of every active case; driven by [`super::material`].
 pub static RETURN_MAPPING: Kernel =

@@ -15,7 +15,7 @@ impl Precision {
     /// Both.
     pub const ALL: [Self; 2] = [Self::F32, Self::F64];
 
-    fn prelude(self) -> Source {
+    fn prelude(self) -> ShaderSource {
         match self {
             Self::F32 => PRELUDE_F32,
             Self::F64 => PRELUDE_F64,
@@ -34,7 +34,7 @@ impl fmt::Display for Precision {
 
 /// One WGSL file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Source {
+pub struct ShaderSource {
     /// Path from the repository root.
     pub path: &'static str,
     /// Contents.
@@ -43,7 +43,7 @@ pub struct Source {
 
 macro_rules! source {
     ($path:literal) => {
-        $crate::compute::gpu::source::Source {
+        $crate::compute::gpu::source::ShaderSource {
             path: concat!("shaders/", $path),
             text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $path)),
         }
@@ -51,8 +51,8 @@ macro_rules! source {
 }
 pub(super) use source;
 
-const PRELUDE_F32: Source = source!("prelude_f32.wgsl");
-const PRELUDE_F64: Source = source!("prelude_f64.wgsl");
+const PRELUDE_F32: ShaderSource = source!("prelude_f32.wgsl");
+const PRELUDE_F64: ShaderSource = source!("prelude_f64.wgsl");
 
 /// Concatenated sources that know where each line came from.
 #[derive(Clone, Debug)]
@@ -67,12 +67,12 @@ pub struct Assembled {
 
 impl Assembled {
     /// Concatenates the prelude of a precision and `sources`.
-    pub fn with_prelude(precision: Precision, sources: &[Source]) -> Self {
+    pub fn with_prelude(precision: Precision, sources: &[ShaderSource]) -> Self {
         Self::new(precision, &[&[precision.prelude()], sources].concat())
     }
 
     /// Concatenates `parts`, of which the first is the prelude.
-    pub fn new(precision: Precision, parts: &[Source]) -> Self {
+    pub fn new(precision: Precision, parts: &[ShaderSource]) -> Self {
         let mut text = String::new();
         let mut starts = Vec::with_capacity(parts.len());
         for part in parts {
@@ -108,8 +108,8 @@ mod tests {
 
     #[test]
     fn places_are_file_and_line() {
-        let a = Source { path: "a.wgsl", text: "one\ntwo\n" };
-        let b = Source { path: "b.wgsl", text: "three\nfour" };
+        let a = ShaderSource { path: "a.wgsl", text: "one\ntwo\n" };
+        let b = ShaderSource { path: "b.wgsl", text: "three\nfour" };
         let assembled = Assembled::new(Precision::F32, &[a, b]);
         assert_eq!(assembled.text, "one\ntwo\n\nthree\nfour\n");
         let place = |word: &str| assembled.place(assembled.text.find(word).unwrap());

@@ -8,8 +8,8 @@ use super::context::GpuContext;
 use super::dispatch::Dispatch;
 use super::error::GpuError;
 use super::layout::{COORDINATES, ELEMENT_BLOCKS};
-use super::pipelines::{Bound, Recorder};
-use super::resident::{Connectivity, MATERIAL_ROOM, Resident, Sizes, replace_materials, send_materials, write_geometry};
+use super::pipelines::{Bound, KernelList};
+use super::resident::{BatchSizes, Connectivity, MATERIAL_ROOM, Resident, replace_materials, send_materials, write_geometry};
 use super::scratch::Scratch;
 use super::shader_sources::{GATHER_TANGENT_BLOCKS, HEX8_JACOBIAN, HEX8_TANGENT, NARROW};
 use crate::compute::{CaseModel, ComputeError};
@@ -25,7 +25,7 @@ struct Inputs<'a, T> {
 
 /// The kernels of a group of cases.
 #[derive(Debug)]
-struct Kernels {
+struct TangentKernels {
     jacobian: Bound,
     elements: Bound,
     blocks: Bound,
@@ -33,14 +33,14 @@ struct Kernels {
 
 /// Tangents of all slots, and the kernels that make them.
 #[derive(Debug)]
-pub struct Set<T> {
+pub struct SlotTangents<T> {
     elements: StorageBuffer<T>,
     blocks: StorageBuffer<T>,
-    groups: Vec<Kernels>,
+    groups: Vec<TangentKernels>,
 }
 
-impl<T: DeviceReal> Set<T> {
-    fn new<R>(sizes: Sizes, scratch: &Scratch<R>, slots: usize) -> Result<Self, GpuError> {
+impl<T: DeviceReal> SlotTangents<T> {
+    fn new<R>(sizes: BatchSizes, scratch: &Scratch<R>, slots: usize) -> Result<Self, GpuError> {
         Ok(Self {
             elements: scratch.pools.vectors.view("tangents of elements", slots * ELEMENT_BLOCKS * sizes.elements)?.each(slots),
             blocks: scratch.pools.blocks.view("tangent blocks", slots * 9 * sizes.blocks)?.each(slots),
@@ -77,7 +77,7 @@ impl<T: DeviceReal> Set<T> {
             element_blocks: self.elements,
             blocks: self.blocks,
         };
-        self.groups.push(Kernels {
+        self.groups.push(TangentKernels {
             jacobian: context.bind(&HEX8_JACOBIAN, T::PRECISION, &[&shape[..], &jacobian].concat())?,
             elements: context.bind(&HEX8_TANGENT, T::PRECISION, &[&shape[..], &elements].concat())?,
             blocks: context.bind(&GATHER_TANGENT_BLOCKS, T::PRECISION, &[&shape[..], &gather].concat())?,
@@ -85,7 +85,7 @@ impl<T: DeviceReal> Set<T> {
         Ok(())
     }
 
-    fn append(&self, dispatch: &Dispatch, sizes: Sizes, list: &mut Recorder<'_>) -> Result<(), GpuError> {
+    fn append(&self, dispatch: &Dispatch, sizes: BatchSizes, list: &mut KernelList<'_>) -> Result<(), GpuError> {
         let (kernels, slots) = (&self.groups[dispatch.group], dispatch.cases.len());
         list.dispatch(&kernels.jacobian, sizes.points(), slots)?;
         list.dispatch(&kernels.elements, sizes.points(), slots)?;
@@ -111,7 +111,7 @@ struct Narrowed {
 /// Tangents in single precision beside residuals in another.
 #[derive(Debug)]
 pub struct Single {
-    set: Set<f32>,
+    set: SlotTangents<f32>,
     groups: Vec<Narrowed>,
     _trial: StorageBuffer<f32>,
     _shapes: [StorageBuffer<[u32; 4]>; 2],
@@ -119,7 +119,7 @@ pub struct Single {
 
 impl Single {
     /// The tangents themselves.
-    pub fn set(&self) -> &Set<f32> {
+    pub fn set(&self) -> &SlotTangents<f32> {
         &self.set
     }
 }
@@ -141,14 +141,14 @@ pub struct Bytes {
 #[derive(Debug)]
 pub enum Tangents<R> {
     /// In the residual's precision.
-    Same(Box<Set<R>>),
+    Same(Box<SlotTangents<R>>),
     /// In single precision.
     Single(Box<Single>),
 }
 
 impl<R: DeviceReal> Tangents<R> {
     /// What they take.
-    pub fn bytes(sizes: Sizes, in_single: bool) -> Bytes {
+    pub fn bytes(sizes: BatchSizes, in_single: bool) -> Bytes {
         let number = if in_single { size_of::<f32>() } else { size_of::<R>() };
         let (elements, blocks) = (ELEMENT_BLOCKS * sizes.elements, 9 * sizes.blocks);
         let of_slot = if in_single { sizes.trial_numbers() } else { 0 };
@@ -172,7 +172,7 @@ impl<R: DeviceReal> Tangents<R> {
     ) -> Result<Self, ComputeError> {
         let sizes = mesh.sizes;
         if !in_single {
-            let mut set = Set::new(sizes, scratch, slots)?;
+            let mut set = SlotTangents::new(sizes, scratch, slots)?;
             for r in residents {
                 let (geometries, start, materials) = (&r.geometries, &r.start, &r.materials);
                 let inputs = Inputs { geometries, start, trial: &scratch.trial, materials };
@@ -188,7 +188,7 @@ impl<R: DeviceReal> Tangents<R> {
             Ok::<_, GpuError>(block)
         };
         let (unknowns, shapes) = (3 * sizes.nodes, [shape(3 * sizes.nodes, 1, of_trial)?, shape(of_start, 0, of_start)?]);
-        let mut set = Set::new(sizes, scratch, slots)?;
+        let mut set = SlotTangents::new(sizes, scratch, slots)?;
         let trial = context.zeros("increments and Jacobians in f32", slots * of_trial)?.each(slots);
         let mut groups = Vec::with_capacity(residents.len());
         for r in residents {
@@ -224,7 +224,7 @@ impl<R: DeviceReal> Tangents<R> {
     pub fn replace(
         &self,
         context: &GpuContext,
-        sizes: Sizes,
+        sizes: BatchSizes,
         group: usize,
         models: &[CaseModel],
         of_mesh: (usize, &Mesh),
@@ -241,7 +241,7 @@ impl<R: DeviceReal> Tangents<R> {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn append(&self, dispatch: &Dispatch, sizes: Sizes, list: &mut Recorder<'_>) -> Result<(), GpuError> {
+    pub fn append(&self, dispatch: &Dispatch, sizes: BatchSizes, list: &mut KernelList<'_>) -> Result<(), GpuError> {
         match self {
             Self::Same(set) => set.append(dispatch, sizes, list),
             Self::Single(single) => {

@@ -7,7 +7,7 @@ use super::arguments::Array;
 use super::compiled::Pipeline;
 use super::context::{GpuContext, PATIENCE};
 use super::error::GpuError;
-use super::profile::{DISPATCHES, KernelTimes, Moved, Profile, Profiling, STAMP, Set, Stamps, add, lock};
+use super::profile::{DISPATCHES, KernelTimes, Moved, Profile, Profiling, Queries, STAMP, Stamps, add, lock};
 
 impl GpuContext {
     /// The same with a sum of the times and bytes of every kernel that it or its parts run from now
@@ -86,7 +86,7 @@ impl GpuContext {
         }))
     }
 
-    fn set_of_queries(&self) -> Result<Set, GpuError> {
+    fn set_of_queries(&self) -> Result<Queries, GpuError> {
         let label = Some("timestamps");
         let count = 2 * DISPATCHES as u32;
         self.scoped("timestamps", || {
@@ -94,7 +94,7 @@ impl GpuContext {
                 let size = STAMP * u64::from(count);
                 self.device.create_buffer(&wgpu::BufferDescriptor { label, size, usage, mapped_at_creation: false })
             };
-            Set {
+            Queries {
                 queries: self.device.create_query_set(&wgpu::QuerySetDescriptor { label, ty: wgpu::QueryType::Timestamp, count }),
                 resolved: buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC),
                 mapped: buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST),

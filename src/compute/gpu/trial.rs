@@ -45,7 +45,7 @@ struct Of {
 
 /// What was measured, and what an iteration is estimated at from that.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Trial {
+pub struct TrialRun {
     of: Of,
     /// Milliseconds of an iteration on the device.
     pub device_ms: f64,
@@ -53,7 +53,7 @@ pub struct Trial {
     pub cpu_ms: f64,
 }
 
-impl Trial {
+impl TrialRun {
     /// Whether the device is the faster one.
     pub fn takes_device(&self) -> bool {
         self.device_ms < self.cpu_ms
@@ -65,7 +65,7 @@ impl Trial {
     /// # Errors
     /// What the device says.
     pub fn of(context: &GpuContext) -> Result<Self, ComputeError> {
-        static KNOWN: Mutex<Option<Trial>> = Mutex::new(None);
+        static KNOWN: Mutex<Option<TrialRun>> = Mutex::new(None);
         Self::through(context, &mut KNOWN.lock().unwrap_or_else(PoisonError::into_inner), cache().as_deref())
     }
 
@@ -116,7 +116,7 @@ impl Trial {
     }
 }
 
-impl fmt::Display for Trial {
+impl fmt::Display for TrialRun {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { of, device_ms, cpu_ms } = self;
         let threads = if of.threads == 1 { "1 thread" } else { &format!("{} threads", of.threads) };
@@ -208,28 +208,28 @@ mod tests {
     fn a_measurement_is_kept_and_no_file_is_trusted() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("new/folder/device.json");
-        let trial = Trial { of: of(2), device_ms: 1.5, cpu_ms: 40.25 };
-        assert_eq!(Trial::read(&path, &of(2)), None);
+        let trial = TrialRun { of: of(2), device_ms: 1.5, cpu_ms: 40.25 };
+        assert_eq!(TrialRun::read(&path, &of(2)), None);
         trial.write(&path);
-        assert_eq!(Trial::read(&path, &of(2)), Some(trial.clone()));
-        assert_eq!(Trial::read(&path, &of(3)), None);
+        assert_eq!(TrialRun::read(&path, &of(2)), Some(trial.clone()));
+        assert_eq!(TrialRun::read(&path, &of(3)), None);
         assert_eq!(std::fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
         let text = std::fs::read_to_string(&path).unwrap();
         for (from, to) in [("1.5", "-1.5"), ("1.5", "null"), ("40.25", "1e999"), ("{", "["), ("a card", "another")] {
             std::fs::write(&path, text.replace(from, to)).unwrap();
-            assert_eq!(Trial::read(&path, &of(2)), None, "{from} -> {to}");
+            assert_eq!(TrialRun::read(&path, &of(2)), None, "{from} -> {to}");
         }
         // A folder in its place is no error.
         std::fs::remove_file(&path).unwrap();
         std::fs::create_dir(&path).unwrap();
         trial.write(&path);
-        assert_eq!(Trial::read(&path, &of(2)), None);
+        assert_eq!(TrialRun::read(&path, &of(2)), None);
         assert_eq!(std::fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
     }
 
     #[test]
     fn the_faster_one_is_taken_and_said() {
-        let trial = |device_ms, cpu_ms| Trial { of: of(1), device_ms, cpu_ms };
+        let trial = |device_ms, cpu_ms| TrialRun { of: of(1), device_ms, cpu_ms };
         assert!(trial(1.0, 2.0).takes_device() && !trial(2.0, 1.0).takes_device());
         let said = trial(1.0, 2.0).to_string();
         assert!(said.contains("about 1.0 ms there and 2.0 ms on the CPU with 1 thread"), "{said}");
@@ -244,10 +244,10 @@ mod tests {
         };
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("device.json");
-        let made = Trial::through(&context, &mut None, Some(&path)).unwrap();
+        let made = TrialRun::through(&context, &mut None, Some(&path)).unwrap();
         assert!(made.device_ms > 0.0 && made.cpu_ms > 0.0 && made.of.adapter == context.adapter().name, "{made:?}");
-        assert_eq!(Trial::through(&context, &mut None, Some(&path)).unwrap(), made);
-        assert_eq!(Trial::through(&context, &mut Some(made.clone()), None).unwrap(), made);
+        assert_eq!(TrialRun::through(&context, &mut None, Some(&path)).unwrap(), made);
+        assert_eq!(TrialRun::through(&context, &mut Some(made.clone()), None).unwrap(), made);
         assert_eq!(context.budget().used(), 0);
         eprintln!("{made}");
     }

@@ -7,7 +7,7 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
 /// A parsed and validated source.
 #[derive(Debug)]
-pub struct Checked {
+pub struct ValidSource {
     /// naga's module.
     pub module: Module,
     /// The types of its expressions.
@@ -18,7 +18,7 @@ pub struct Checked {
 ///
 /// # Errors
 /// [`GpuError::Shader`] with file and line.
-pub fn validate(source: &Assembled) -> Result<Checked, GpuError> {
+pub fn validate(source: &Assembled) -> Result<ValidSource, GpuError> {
     let fail = |byte: Option<u32>, message: String| GpuError::Shader { place: source.place(byte.unwrap_or(0) as usize), message };
     let module = naga::front::wgsl::parse_str(&source.text)
         .map_err(|e| fail(e.location(&source.text).map(|l| l.offset), e.message().to_owned()))?;
@@ -27,7 +27,7 @@ pub fn validate(source: &Assembled) -> Result<Checked, GpuError> {
         Precision::F64 => Capabilities::FLOAT64,
     };
     match Validator::new(ValidationFlags::all(), capabilities).validate(&module) {
-        Ok(info) => Ok(Checked { module, info }),
+        Ok(info) => Ok(ValidSource { module, info }),
         Err(e) => {
             // the innermost of naga's labels is the expression, the outermost the function
             let start = e.spans().filter_map(|(span, _)| span.to_range()).max_by_key(|r| r.start).map(|r| r.start as u32);

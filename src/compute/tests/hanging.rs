@@ -18,7 +18,7 @@ fn of(mesh: &Arc<Mesh>, hardening: FlowStress<f64>) -> CaseModel {
 
 fn forces(backend: &mut dyn Compute, u: &[f64]) -> Vec<f64> {
     let mut force = vec![0.0; u.len()];
-    assert_eq!(CaseHandle { backend, case: 0 }.internal_force(u, &mut force).unwrap(), Outcome::Valid);
+    assert_eq!(CaseHandle { backend, case: 0 }.internal_force(u, &mut force).unwrap(), Evaluated::Valid);
     force
 }
 
@@ -43,7 +43,7 @@ fn a_uniform_deformation_passes_through_corners_that_hang() {
     assert!(largest(true) < 1e-15 && largest(false) > 1e-4, "{:e} inside, {:e} outside", largest(true), largest(false));
 }
 
-/// Blocks against differences of the forces, at nodes from which corners hang; elastic, as a point
+/// TangentBlocks against differences of the forces, at nodes from which corners hang; elastic, as a point
 /// that begins to yield between the two has neither slope.
 #[test]
 fn the_tangent_is_the_derivative_across_corners_that_hang() {
@@ -53,7 +53,7 @@ fn the_tangent_is_the_derivative_across_corners_that_hang() {
     let u = displacement(&mesh, 2e-2);
     let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
     let mut blocks = vec![[0.0_f64; 9]; pattern.entries()];
-    assert_eq!(CaseHandle { backend: &mut cpu, case: 0 }.tangent(&u, &mut blocks).unwrap(), Outcome::Valid);
+    assert_eq!(CaseHandle { backend: &mut cpu, case: 0 }.tangent(&u, &mut blocks).unwrap(), Evaluated::Valid);
     let carriers = mesh
         .elements
         .iter()

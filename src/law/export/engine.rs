@@ -14,14 +14,14 @@ use crate::law::{LawError, LawFile};
 const MODULE: &str = include_str!("asperity_law.py");
 
 /// What an engine gets.
-struct Unit {
+struct EngineUnits {
     /// The table of a sphere with R = 1 and E = 1.
     table: EngineTable,
     /// Its case, in those units.
     case: Case,
 }
 
-impl Unit {
+impl EngineUnits {
     /// Of a law, for the material and the friction of `case`; a table needs no case.
     fn new(law: &LawFile, case: Option<&Case>) -> Result<Self, LawError> {
         if let (Some(case), LawFile::Table(table)) = (case, law) {
@@ -93,7 +93,7 @@ pub(super) struct TableFile {
 
 /// The table of the contact of a case.
 pub(super) fn table_file(law: &LawFile, case: &Case) -> Result<TableFile, LawError> {
-    let unit = Unit::new(law, Some(case))?;
+    let unit = EngineUnits::new(law, Some(case))?;
     Ok(TableFile { content: unit.table.file(), time_step: unit.time_step() })
 }
 
@@ -110,7 +110,7 @@ pub fn beyond_the_law(law: &LawFile, case: &Case) -> Result<Vec<OutOfRange>, Law
 /// # Errors
 /// The law says nothing of the case; no case; a table of another material.
 pub fn engine_source(law: &LawFile, case: Option<&Case>) -> Result<String, LawError> {
-    Ok(Unit::new(law, case)?.table.header())
+    Ok(EngineUnits::new(law, case)?.table.header())
 }
 
 /// All files for Python: the module, which has the update and its table within, and test vectors.
@@ -118,7 +118,7 @@ pub fn engine_source(law: &LawFile, case: Option<&Case>) -> Result<String, LawEr
 /// # Errors
 /// As [`engine_source`].
 pub(super) fn python_files(law: &LawFile, case: Option<&Case>) -> Result<Vec<ExportedFile>, LawError> {
-    let Unit { table, case } = Unit::new(law, case)?;
+    let EngineUnits { table, case } = EngineUnits::new(law, case)?;
     let values = [
         ("SOURCE", table.source.clone()),
         ("DEEPEST", table.deepest.to_string()),
@@ -139,7 +139,7 @@ pub(super) fn python_files(law: &LawFile, case: Option<&Case>) -> Result<Vec<Exp
 /// # Errors
 /// As [`engine_source`].
 pub fn engine_files(law: &LawFile, case: Option<&Case>) -> Result<Vec<ExportedFile>, LawError> {
-    let Unit { table, case } = Unit::new(law, case)?;
+    let EngineUnits { table, case } = EngineUnits::new(law, case)?;
     let vectors = unit_vectors(&table.parameters, &case.material, table.deepest.max(1e-3), SEED);
     Ok([
         ("asperity_law.h", table.header()),

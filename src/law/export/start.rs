@@ -35,7 +35,7 @@ pub struct Start {
 }
 
 /// A table of the start.
-struct Table {
+struct StartTable {
     /// Its file.
     name: String,
     /// The materials, counted from 0; of a wall the one that touches it.
@@ -77,7 +77,7 @@ pub fn start_files(law: &LawFile, engine: Engine, cases: &[(String, Case)]) -> R
         let lightest = [first, second.unwrap_or(first)].map(|i| cases[i].1.sphere.radius).into_iter().fold(f64::MAX, f64::min);
         let mass = 4.0 / 3.0 * std::f64::consts::PI * lightest.powi(3);
         let scale = (mass / (case.material.youngs_modulus * case.sphere.radius)).sqrt();
-        tables.push(Table { name, first, second, time_step: time_step * scale });
+        tables.push(StartTable { name, first, second, time_step: time_step * scale });
         Ok(())
     };
     for (i, (_, case)) in cases.iter().enumerate() {
@@ -152,7 +152,7 @@ fn described(cases: &[(String, Case)], names: &[String], mark: &str) -> String {
 }
 
 /// The input for LAMMPS.
-fn input(cases: &[(String, Case)], names: &[String], tables: &[Table]) -> String {
+fn input(cases: &[(String, Case)], names: &[String], tables: &[StartTable]) -> String {
     let count = cases.len();
     let largest = cases.iter().map(|(_, case)| case.sphere.radius).fold(0.0, f64::max);
     let [mut densities, mut coefficients, mut walls, mut pours, mut poured] = [const { String::new() }; 5];
@@ -219,7 +219,7 @@ fn input(cases: &[(String, Case)], names: &[String], tables: &[Table]) -> String
 }
 
 /// The program in C.
-fn program(cases: &[(String, Case)], names: &[String], tables: &[Table]) -> String {
+fn program(cases: &[(String, Case)], names: &[String], tables: &[StartTable]) -> String {
     let materials: Vec<String> = cases
         .iter()
         .enumerate()

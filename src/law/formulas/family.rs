@@ -10,7 +10,7 @@ use crate::output::plain_json;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Forms {
-    variable: Variable,
+    variable: PlasticVariable,
     slip_displacement: SlipDisplacement,
     normal_curve: NormalCurve,
 }
@@ -18,7 +18,7 @@ pub struct Forms {
 /// In what plasticity is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-enum Variable {
+enum PlasticVariable {
     #[default]
     Area,
 }

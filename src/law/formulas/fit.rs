@@ -64,14 +64,14 @@ fn failed(what: &'static str) -> impl Fn(String) -> LawError {
 /// Where a fit starts and how strongly it is drawn there: to another law's constants, or weakly to
 /// constants of order one.
 #[derive(Clone, Copy, Debug)]
-struct Start<T, W> {
+struct FitStart<T, W> {
     constants: T,
     pull: W,
     /// Whether `constants` are another law's.
     prior: bool,
 }
 
-impl<T, W: Copy> Start<T, W> {
+impl<T, W: Copy> FitStart<T, W> {
     /// The weight, if it is another law's.
     fn weight(&self) -> Option<W> {
         self.prior.then_some(self.pull)
@@ -84,15 +84,15 @@ impl<T, W: Copy> Start<T, W> {
 }
 
 /// A start of the shear.
-type ShearStart = Start<Constants, f64>;
+type ShearStart = FitStart<Constants, f64>;
 /// A start of the normal problem, with the pull of a0 and of F_N0: they are fitted one after the
 /// other, and a small study may know one of them better than its prior, but not the other.
-type NormalStart = Start<NormalModel, [f64; 2]>;
+type NormalStart = FitStart<NormalModel, [f64; 2]>;
 
 /// The constants that fit the samples best.
 fn fit_constants(start: &ShearStart, samples: &[&Sample]) -> Result<Constants, LawError> {
     let states: Vec<Plasticity> = samples.iter().map(|sample| plasticity(sample)).collect();
-    let Start { mut constants, pull, .. } = *start;
+    let FitStart { mut constants, pull, .. } = *start;
 
     constants.fall = array(
         &minimize(&constants.fall, pull, |c| {
@@ -195,9 +195,9 @@ type ComparedNormal = Compared<NormalStart, NormalModel, NormalCandidate>;
 
 /// The starts of the shear compared, best first.
 fn compare_shears(prior: Option<&Law>, folded: &Folded) -> Result<Vec<ComparedShear>, LawError> {
-    let mut starts = vec![Start { constants: Constants::START, pull: PULL, prior: false }];
+    let mut starts = vec![FitStart { constants: Constants::START, pull: PULL, prior: false }];
     if let Some(Law { constants, .. }) = prior {
-        starts.extend(WEIGHTS.map(|pull| Start { constants: *constants, pull, prior: true }));
+        starts.extend(WEIGHTS.map(|pull| FitStart { constants: *constants, pull, prior: true }));
     }
     let mut compared: Vec<_> = starts
         .into_par_iter()
@@ -213,9 +213,9 @@ fn compare_shears(prior: Option<&Law>, folded: &Folded) -> Result<Vec<ComparedSh
 
 /// The starts of the normal problem compared, best first.
 fn compare_normals(prior: Option<&Law>, folded: &Folded) -> Result<Vec<ComparedNormal>, LawError> {
-    let mut starts = vec![Start { constants: NormalModel::START, pull: [PULL; 2], prior: false }];
+    let mut starts = vec![FitStart { constants: NormalModel::START, pull: [PULL; 2], prior: false }];
     if let Some(Law { normal, .. }) = prior {
-        let start = |pull| Start { constants: *normal, pull, prior: true };
+        let start = |pull| FitStart { constants: *normal, pull, prior: true };
         starts.extend(WEIGHTS.into_iter().flat_map(|a| WEIGHTS.map(|f| start([a, f]))));
     }
     let mut compared: Vec<_> = starts

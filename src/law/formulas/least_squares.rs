@@ -16,14 +16,14 @@ fn constant(unknown: f64) -> f64 {
     unknown.clamp(-LARGEST_LOGARITHM, LARGEST_LOGARITHM).exp()
 }
 
-struct Problem<'a, F> {
+struct LeastSquares<'a, F> {
     residuals: &'a F,
     pull: f64,
     start: DVector<f64>,
     unknowns: DVector<f64>,
 }
 
-impl<F: Fn(&[f64]) -> Vec<f64>> Problem<'_, F> {
+impl<F: Fn(&[f64]) -> Vec<f64>> LeastSquares<'_, F> {
     /// Residuals of the data, then the pull.
     fn evaluate(&self, unknowns: &DVector<f64>) -> DVector<f64> {
         let constants: Vec<f64> = unknowns.iter().map(|&x| constant(x)).collect();
@@ -33,7 +33,7 @@ impl<F: Fn(&[f64]) -> Vec<f64>> Problem<'_, F> {
     }
 }
 
-impl<F: Fn(&[f64]) -> Vec<f64>> LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, F> {
+impl<F: Fn(&[f64]) -> Vec<f64>> LeastSquaresProblem<f64, Dyn, Dyn> for LeastSquares<'_, F> {
     type ParameterStorage = Owned<f64, Dyn>;
     type ResidualStorage = Owned<f64, Dyn>;
     type JacobianStorage = Owned<f64, Dyn, Dyn>;
@@ -76,7 +76,7 @@ impl<F: Fn(&[f64]) -> Vec<f64>> LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'
 /// What the library says, where the residuals are not finite or it makes no way.
 pub fn minimize(start: &[f64], pull: f64, residuals: impl Fn(&[f64]) -> Vec<f64>) -> Result<Vec<f64>, String> {
     let unknowns = DVector::from_iterator(start.len(), start.iter().map(|x| x.ln()));
-    let problem = Problem { residuals: &residuals, pull, start: unknowns.clone(), unknowns };
+    let problem = LeastSquares { residuals: &residuals, pull, start: unknowns.clone(), unknowns };
     let (problem, report) =
         LevenbergMarquardt::new().with_ftol(1e-10).with_xtol(1e-8).with_gtol(1e-10).with_patience(40).minimize(problem);
     // An exhausted patience is an answer as good as its last digit; anything else without success

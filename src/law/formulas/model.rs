@@ -10,7 +10,7 @@ use super::normal::{NormalModel, NormalState};
 use super::shear::{self, Constants, Plasticity};
 use crate::analytical::{ElasticSphere, cattaneo_mindlin, johnson};
 use crate::law::LawError;
-use crate::law::bounds::{Bounds, Checked, TOLD};
+use crate::law::bounds::{Checked, TOLD, ValueBounds};
 use crate::law::json::{self, LawKind};
 use crate::law::range::{Interval, MARGIN, OutOfRange};
 use crate::law::report::{Candidate, FittedCase, NormalCandidate, RegionError};
@@ -258,11 +258,11 @@ impl Law {
 
 /// What the constants of the forms may be, which are of order one: positive, since the search has
 /// their logarithms.
-const CONSTANT: Bounds = Bounds { least: 1e-9, most: 1e9 };
+const CONSTANT: ValueBounds = ValueBounds { least: 1e-9, most: 1e9 };
 /// Ends of the ranges of what a law was fitted to.
-const RANGE: Bounds = Bounds { least: 0.0, most: 1e9 };
+const RANGE: ValueBounds = ValueBounds { least: 0.0, most: 1e9 };
 /// Of Poisson's ratio: what an isotropic solid can have.
-const POISSON: Bounds = Bounds { least: -1.0, most: 0.5 };
+const POISSON: ValueBounds = ValueBounds { least: -1.0, most: 0.5 };
 
 impl LawKind for Law {
     const NAME: &'static str = "law of formulas";

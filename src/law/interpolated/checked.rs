@@ -2,28 +2,28 @@
 
 use super::components::Components;
 use super::inputs::{INPUTS, NAMES};
-use super::{FORMAT, Interpolated, PROCESSES, VERSION};
+use super::model::{FORMAT, Interpolated, PROCESSES, VERSION};
 use crate::contact_law::Frame;
-use crate::law::bounds::{Bounds, Checked, TOLD};
+use crate::law::bounds::{Checked, TOLD, ValueBounds};
 use crate::law::json::LawKind;
 use crate::law::table::{Against, frame_of_the_centres};
 
 /// Means of inputs and outputs and the ends of their ranges, which are logarithms and shares.
-const VALUE: Bounds = Bounds { least: -1e3, most: 1e3 };
+const VALUE: ValueBounds = ValueBounds { least: -1e3, most: 1e3 };
 /// Deviations, of which 1e-12 stands for none.
-const DEVIATION: Bounds = Bounds { least: 1e-12, most: 1e3 };
+const DEVIATION: ValueBounds = ValueBounds { least: 1e-12, most: 1e3 };
 /// Inputs of a sample over their deviation.
-const PLACE: Bounds = Bounds { least: -1e3, most: 1e3 };
+const PLACE: ValueBounds = ValueBounds { least: -1e3, most: 1e3 };
 /// Lengths over which a function changes, of inputs over their deviation.
-const LENGTH: Bounds = Bounds { least: 1e-3, most: 1e6 };
+const LENGTH: ValueBounds = ValueBounds { least: 1e-3, most: 1e6 };
 /// Variances over deviation^2.
-const VARIANCE: Bounds = Bounds { least: 0.0, most: 1e6 };
+const VARIANCE: ValueBounds = ValueBounds { least: 0.0, most: 1e6 };
 /// Weights of the samples.
-const WEIGHT: Bounds = Bounds { least: -1e12, most: 1e12 };
+const WEIGHT: ValueBounds = ValueBounds { least: -1e12, most: 1e12 };
 /// Points of a mean curve, which are shares, and of a direction, whose length is 1.
-const CURVE: Bounds = Bounds { least: -10.0, most: 10.0 };
+const CURVE: ValueBounds = ValueBounds { least: -10.0, most: 10.0 };
 /// Elements along the contact radius, as a case may have them.
-const ELEMENTS: Bounds = Bounds { least: 4.0, most: 32.0 };
+const ELEMENTS: ValueBounds = ValueBounds { least: 4.0, most: 32.0 };
 
 impl LawKind for Interpolated {
     const NAME: &'static str = "law by interpolation";

@@ -12,28 +12,28 @@ const ITERATIONS: usize = 2000;
 const STANDS: f64 = 1e-12;
 
 /// Values of a curve at its points.
-pub type Curve = [f64; POINTS];
+pub type CurveValues = [f64; POINTS];
 
 /// The mean of many curves and the directions in which they differ most, of length 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Components {
     /// The mean.
-    pub mean: Curve,
+    pub mean: CurveValues,
     /// The directions, the one with the greatest variance first.
-    pub directions: [Curve; COMPONENTS],
+    pub directions: [CurveValues; COMPONENTS],
 }
 
-fn dot(a: &Curve, b: &Curve) -> f64 {
+fn dot(a: &CurveValues, b: &CurveValues) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 impl Components {
     /// Those of `curves`, and how far each curve goes in each direction.
-    pub fn of(curves: &[Curve]) -> (Self, Vec<[f64; COMPONENTS]>) {
+    pub fn of(curves: &[CurveValues]) -> (Self, Vec<[f64; COMPONENTS]>) {
         let n = curves.len() as f64;
-        let mean: Curve = std::array::from_fn(|j| curves.iter().map(|curve| curve[j]).sum::<f64>() / n);
-        let mut rest: Vec<Curve> = curves.iter().map(|curve| std::array::from_fn(|j| curve[j] - mean[j])).collect();
+        let mean: CurveValues = std::array::from_fn(|j| curves.iter().map(|curve| curve[j]).sum::<f64>() / n);
+        let mut rest: Vec<CurveValues> = curves.iter().map(|curve| std::array::from_fn(|j| curve[j] - mean[j])).collect();
         let mut directions = [[0.0; POINTS]; COMPONENTS];
         let mut scores = vec![[0.0; COMPONENTS]; curves.len()];
         for (k, direction) in directions.iter_mut().enumerate() {
@@ -49,16 +49,16 @@ impl Components {
     }
 
     /// The curve that goes so far in each direction.
-    pub fn curve(&self, scores: &[f64; COMPONENTS]) -> Curve {
+    pub fn curve(&self, scores: &[f64; COMPONENTS]) -> CurveValues {
         std::array::from_fn(|j| self.mean[j] + (0..COMPONENTS).map(|k| scores[k] * self.directions[k][j]).sum::<f64>())
     }
 }
 
 /// The direction of the greatest variance.
-fn greatest(curves: &[Curve]) -> Curve {
+fn greatest(curves: &[CurveValues]) -> CurveValues {
     // From the curve that is farthest from the mean.
     let start = curves.iter().max_by(|a, b| dot(a, a).total_cmp(&dot(b, b)));
-    let unit = |curve: Curve| {
+    let unit = |curve: CurveValues| {
         let length = dot(&curve, &curve).sqrt();
         if length > 0.0 { curve.map(|x| x / length) } else { std::array::from_fn(|j| if j == 0 { 1.0 } else { 0.0 }) }
     };
@@ -87,14 +87,14 @@ mod tests {
 
     #[test]
     fn curves_of_three_parameters_come_back() {
-        let curve = |i: usize| -> Curve {
+        let curve = |i: usize| -> CurveValues {
             let t = i as f64;
             std::array::from_fn(|j| {
                 let x = j as f64 / 24.0;
                 1.0 + (0.3 * t).sin() * x + (0.7 * t).cos() * x * x + 0.2 * (1.1 * t).sin() * (3.0 * x).sin()
             })
         };
-        let curves: Vec<Curve> = (0..40).map(curve).collect();
+        let curves: Vec<CurveValues> = (0..40).map(curve).collect();
         let (components, scores) = Components::of(&curves);
         for (curve, scores) in curves.iter().zip(&scores) {
             let again = components.curve(scores);

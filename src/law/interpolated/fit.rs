@@ -4,11 +4,11 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use super::components::{COMPONENTS, Components, Curve};
+use super::components::{COMPONENTS, Components, CurveValues};
 use super::inputs::{self, INPUTS, inputs};
+use super::model::{self, FORMAT, Input, Interpolated, NormalErrors, Source, VERSION, bodies, keeps_its_force};
 use super::outputs::{self, NUMBERS, Outputs, outputs};
 use super::process::{InputPoint, Process};
-use super::{FORMAT, Input, Interpolated, NormalErrors, Source, VERSION, bodies, keeps_its_force};
 use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Hold, Material, Opponent, Segment};
 use crate::contact_law::{Frame, POINTS};
@@ -30,7 +30,7 @@ pub const FEWEST_MATERIALS: usize = 8;
 const TUNED: usize = 500;
 
 /// One contact of the study.
-struct Sample {
+struct FittedContact {
     material: usize,
     sphere: ElasticSphere,
     friction: f64,
@@ -46,7 +46,7 @@ struct Sample {
 /// What of a study can be used, and what not.
 struct Data {
     body: Option<Against>,
-    samples: Vec<Sample>,
+    samples: Vec<FittedContact>,
     materials: Vec<Material>,
     left_out: Vec<(String, String)>,
 }
@@ -73,7 +73,7 @@ pub fn fit(dir: &Path, reversal: Option<&Interpolated>) -> Result<Interpolated, 
     let spread = spread(&samples);
     let places: Vec<InputPoint> =
         samples.iter().map(|s| std::array::from_fn(|i| (s.inputs[i] - spread[i].mean) / spread[i].deviation)).collect();
-    let curves = |of: fn(&Outputs) -> Curve| Components::of(&samples.iter().map(|s| of(&s.outputs)).collect::<Vec<_>>());
+    let curves = |of: fn(&Outputs) -> CurveValues| Components::of(&samples.iter().map(|s| of(&s.outputs)).collect::<Vec<_>>());
     let ((ratio, of_ratio), (normal, of_normal)) = (curves(|o| o.ratio), curves(|o| o.normal));
     let mut columns: Vec<(String, Vec<f64>)> =
         (0..NUMBERS).map(|i| (outputs::NAMES[i].to_owned(), samples.iter().map(|s| s.outputs.numbers[i]).collect())).collect();
@@ -145,7 +145,7 @@ fn both(errors: impl Iterator<Item = f64>) -> [f64; 2] {
 }
 
 /// Mean, deviation and range of each input. An input that never changes counts for nothing.
-fn spread(samples: &[Sample]) -> Vec<Input> {
+fn spread(samples: &[FittedContact]) -> Vec<Input> {
     let n = samples.len() as f64;
     (0..INPUTS)
         .map(|i| {
@@ -163,7 +163,7 @@ fn spread(samples: &[Sample]) -> Vec<Input> {
 }
 
 /// Errors of F_T over its peak and of F_N over F_N0 along the shear of a sample.
-fn errors(sample: &Sample, level: &Level) -> CaseErrors {
+fn errors(sample: &FittedContact, level: &Level) -> CaseErrors {
     let one = &sample.measured;
     let (mut squares, mut greatest) = ([0.0; 2], [0.0f64; 2]);
     for point in &one.curve {
@@ -240,8 +240,8 @@ fn sample(
     directory: &OutputDirectory,
     reversal: Option<&Interpolated>,
     materials: &mut Vec<Material>,
-) -> Result<Option<Sample>, LawError> {
-    let friction = super::friction(case);
+) -> Result<Option<FittedContact>, LawError> {
+    let friction = model::friction(case);
     let history = read_history(&directory.history())?;
     let Some(measured) = Measured::of(case, &history) else { return Ok(None) };
     let (body, sphere) = bodies(case)?;
@@ -260,7 +260,7 @@ fn sample(
         materials.push(own);
         materials.len() - 1
     });
-    Ok(Some(Sample {
+    Ok(Some(FittedContact {
         material,
         sphere,
         friction,

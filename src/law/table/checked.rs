@@ -5,25 +5,25 @@ use super::level::Level;
 use super::tabulated::{FORMAT, Tabulated, VERSION, differ, frame_of_the_centres};
 use crate::case::{Case, Friction};
 use crate::contact_law::{Centres, POINTS};
-use crate::law::bounds::{Bounds, Checked, TOLD};
+use crate::law::bounds::{Checked, TOLD, ValueBounds};
 use crate::law::json::LawKind;
 use crate::law::table::Against;
 
 /// Depths over R: a case presses to 0.3 of the larger radius at the most, which is ten times the
 /// smaller one, and a body that is to be put in series three times as deep.
-const DEPTH: Bounds = Bounds { least: 1e-15, most: 100.0 };
+const DEPTH: ValueBounds = ValueBounds { least: 1e-15, most: 100.0 };
 /// Lengths over R, forces over E R^2 and stiffnesses over E R.
-const SIZE: Bounds = Bounds { least: 1e-30, most: 1e4 };
+const SIZE: ValueBounds = ValueBounds { least: 1e-30, most: 1e4 };
 /// F_N at full slip over F_N0, but for rounding.
-const SHARE: Bounds = Bounds { least: 1e-3, most: 1.0 + 1e-9 };
+const SHARE: ValueBounds = ValueBounds { least: 1e-3, most: 1.0 + 1e-9 };
 /// The exponent of a backbone: at 1 it has no curve.
-const EXPONENT: Bounds = Bounds { least: 1.0 + 1e-9, most: 10.0 };
+const EXPONENT: ValueBounds = ValueBounds { least: 1.0 + 1e-9, most: 10.0 };
 /// c of the yield curve.
-const YIELDING: Bounds = Bounds { least: 1e-9, most: 1e6 };
+const YIELDING: ValueBounds = ValueBounds { least: 1e-9, most: 1e6 };
 /// F_T over mu times F_N at full slip, which is what is left of F_N0.
-const TANGENTIAL: Bounds = Bounds { least: 0.0, most: 1e3 };
+const TANGENTIAL: ValueBounds = ValueBounds { least: 0.0, most: 1e3 };
 /// What F_N has lost of what it loses.
-const NORMAL: Bounds = Bounds { least: -0.1, most: 1.1 };
+const NORMAL: ValueBounds = ValueBounds { least: -0.1, most: 1.1 };
 /// How many levels there may be. A spline goes through them all.
 const LEVELS: [usize; 2] = [3, 200];
 /// By how much a level is deeper than the one before, at least: the spline divides by it.

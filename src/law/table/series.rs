@@ -97,7 +97,7 @@ fn root(mut low: f64, mut high: f64, rising: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// One of the two bodies, by what its table says of the half that is its own.
-struct Body {
+struct BodyInSeries {
     curves: Curves,
     range: Interval,
     /// Its part of the table's h and delta_T: half of an equal pair's.
@@ -115,7 +115,7 @@ struct Body {
 
 /// A body pressed on the plane between the two: R' and what it has there, as a force or a length.
 #[derive(Clone)]
-struct Pressed {
+struct PressedBody {
     radius: f64,
     /// By how much it gives way.
     h: f64,
@@ -130,7 +130,7 @@ struct Pressed {
     level: Level,
 }
 
-impl Body {
+impl BodyInSeries {
     fn new(table: &Tabulated, material: &Material, share: f64, curvature: Option<f64>) -> Self {
         let (e, nu) = (material.youngs_modulus, material.poissons_ratio);
         let mut body = Self {
@@ -199,13 +199,13 @@ impl Body {
         scale * f_n0 * self.modulus * radius * radius
     }
 
-    fn pressed(&self, radius: f64, h: f64) -> Pressed {
+    fn pressed(&self, radius: f64, h: f64) -> PressedBody {
         let level = self.level(h / (self.share * radius));
         let force = self.force(radius, h);
         let unloading = level.unloading_radius * radius;
         let stiffness = 2.0 * self.effective_modulus * unloading / self.share;
         let gamma = unloading_exponent(self.share * radius, self.effective_modulus, unloading, force);
-        Pressed {
+        PressedBody {
             radius,
             h,
             force,
@@ -238,7 +238,7 @@ impl Body {
     }
 }
 
-impl Pressed {
+impl PressedBody {
     /// By how much its elastic approach is less at the normal force `force` than at F_N0.
     fn recovered(&self, force: f64) -> f64 {
         self.depth * (1.0 - (force / self.force).powf(1.0 / self.gamma))
@@ -252,19 +252,19 @@ impl Pressed {
 }
 
 /// The contact radius of the two: they have the same but for what [`RISING`] bends.
-fn mean_radius(pressed: &[Pressed; 2]) -> f64 {
+fn mean_radius(pressed: &[PressedBody; 2]) -> f64 {
     0.5 * (pressed[0].a + pressed[1].a)
 }
 
 /// The limit curve of a body at constant h, over its F_N0.
-struct Limit {
+struct LimitCurve {
     /// x, F_T and F_N, from x = 0 on.
     points: Vec<[f64; 3]>,
     /// The greatest F_T/F_N up to there.
     ratios: Vec<f64>,
 }
 
-impl Limit {
+impl LimitCurve {
     fn new(level: &Level, friction: f64) -> Self {
         let at = |shape: &[f64], x: f64| {
             let j = ((POINTS as f64 * x.sqrt()) as usize).min(POINTS - 1);
@@ -311,8 +311,8 @@ impl Limit {
 
 /// The two bodies at an indentation.
 struct PressedPair<'a> {
-    bodies: &'a [Body; 2],
-    pressed: [Pressed; 2],
+    bodies: &'a [BodyInSeries; 2],
+    pressed: [PressedBody; 2],
     friction: f64,
     h: f64,
     /// The two are one body twice: each has half of all.
@@ -321,7 +321,7 @@ struct PressedPair<'a> {
 
 impl<'a> PressedPair<'a> {
     /// Presses the bodies together by `h`, the radii being shared out of `radius`, R*.
-    fn new(bodies: &'a [Body; 2], radius: f64, friction: f64, h: f64) -> Self {
+    fn new(bodies: &'a [BodyInSeries; 2], radius: f64, friction: f64, h: f64) -> Self {
         let alike = bodies[0].like(&bodies[1]);
         if alike {
             let pressed = [0, 1].map(|i| bodies[i].pressed(2.0 * radius, 0.5 * h));
@@ -354,7 +354,7 @@ impl<'a> PressedPair<'a> {
     /// The shear at constant h: delta_T, F_T and F_N from its start on.
     fn shear(&self) -> Vec<[f64; 3]> {
         let (mu, both) = (self.friction, &self.pressed);
-        let limits = [0, 1].map(|i| Limit::new(&both[i].level, mu));
+        let limits = [0, 1].map(|i| LimitCurve::new(&both[i].level, mu));
         let end = limits[0].last_ratio().min(limits[1].last_ratio()).min(mu * (1.0 - 1e-9));
         let mut curve = vec![[0.0, 0.0, both[0].force]];
         let mut reached = [0.0f64; 2];
@@ -403,7 +403,7 @@ impl<'a> PressedPair<'a> {
     /// The level of the pair, in units of the sphere's R and E.
     fn level(&self, sphere: &ElasticSphere) -> Level {
         let both = &self.pressed;
-        let series = |of: fn(&Pressed) -> f64| 1.0 / (1.0 / of(&both[0]) + 1.0 / of(&both[1]));
+        let series = |of: fn(&PressedBody) -> f64| 1.0 / (1.0 / of(&both[0]) + 1.0 / of(&both[1]));
         let (f_n0, a0, k_t) = (both[0].force, mean_radius(both), series(|body| body.k_t));
         let unloading_radius = series(|body| body.stiffness) / (2.0 * sphere.effective_modulus());
         if self.friction <= 0.0 {
@@ -518,7 +518,7 @@ pub fn compose_from(case: &Case, tables: [&Tabulated; 2], for_shear: [&Tabulated
             error => error,
         })?;
         // Of h in the table this much is one body's.
-        Ok::<Body, LawError>(Body::new(table, material, 1.0 / alone.bodies(), curvature))
+        Ok::<BodyInSeries, LawError>(BodyInSeries::new(table, material, 1.0 / alone.bodies(), curvature))
     };
     let bodies = [body(0, tables, Some(curvatures[0]))?, body(1, tables, Some(curvatures[1]))?];
     let sheared = [body(0, for_shear, None)?, body(1, for_shear, None)?];

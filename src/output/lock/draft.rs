@@ -20,7 +20,7 @@ pub struct Draft {
 }
 
 /// A lock's file that has its name, with the error of a file system that has no locks.
-pub type Named = (File, Option<io::Error>);
+pub type NamedFile = (File, Option<io::Error>);
 
 impl Draft {
     /// Makes the draft of a lock's file.
@@ -40,7 +40,7 @@ impl Draft {
     }
 
     /// Gives it the name, if nothing has that.
-    pub fn link(self, path: &Path) -> io::Result<Option<Named>> {
+    pub fn link(self, path: &Path) -> io::Result<Option<NamedFile>> {
         match fs::hard_link(&self.name.0, path) {
             Ok(()) => Ok(Some((self.file, self.no_locks))),
             // A network may lose the answer that all went well.
@@ -67,7 +67,7 @@ impl Draft {
     }
 
     /// Gives it the name, whatever has it; `None` if somebody removed the draft.
-    pub fn replace(self, path: &Path) -> io::Result<Option<Named>> {
+    pub fn replace(self, path: &Path) -> io::Result<Option<NamedFile>> {
         match fs::rename(&self.name.0, path) {
             Ok(()) => Ok(Some((self.file, self.no_locks))),
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),

@@ -21,7 +21,7 @@ use std::time::{Duration, SystemTime};
 
 use super::OutputError;
 use beat::Own;
-use draft::{Draft, Named};
+use draft::{Draft, NamedFile};
 use file::open;
 use holder::{Holder, left};
 
@@ -94,7 +94,7 @@ impl DirectoryLock {
         }
     }
 
-    fn held(dir: &Path, path: &Path, (file, no_locks): Named, before: Option<&Holder>) -> Self {
+    fn held(dir: &Path, path: &Path, (file, no_locks): NamedFile, before: Option<&Holder>) -> Self {
         let note = match (no_locks, before) {
             (Some(error), _) => Some(format!("{} cannot be locked ({error}): see that no other run writes there", dir.display())),
             (None, Some(before)) if !before.name.is_empty() => {
@@ -128,7 +128,7 @@ impl Drop for DirectoryLock {
 }
 
 /// How the file of somebody's lock stands.
-enum State {
+enum LockState {
     /// Somebody is there; where he may have been killed, for how long he still counts as that.
     Held(Option<Duration>),
     /// It was not touched for a while, and nothing is known of its process.
@@ -138,13 +138,13 @@ enum State {
 }
 
 /// How a file stands, at the time `now` of its file system's clock.
-fn state(file: &File, holder: &Holder, now: SystemTime) -> State {
+fn state(file: &File, holder: &Holder, now: SystemTime) -> LockState {
     if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
-        State::Held(None)
+        LockState::Held(None)
     } else if holder.is_gone(file) {
-        State::Gone
+        LockState::Gone
     } else {
-        left(file, now).map_or(State::Old, |left| State::Held(Some(left)))
+        left(file, now).map_or(LockState::Old, |left| LockState::Held(Some(left)))
     }
 }
 

@@ -11,7 +11,7 @@ use super::beat::{self, Own};
 use super::draft::{Draft, is_left, random};
 use super::file::{open, same_file};
 use super::holder::{Holder, age};
-use super::{State, state};
+use super::{LockState, state};
 use crate::output::{OutputError, draft_of};
 
 /// How the names of the files begin of those who compute a study in a directory.
@@ -72,7 +72,7 @@ impl TaskLock {
             let holder = Holder::read(&file);
             let hinders = alone || holder.task != task;
             let left = match state(&file, &holder, now) {
-                State::Held(wait) => {
+                LockState::Held(wait) => {
                     // The one who will be there longest.
                     if hinders
                         && there.as_ref().is_none_or(|(_, longest)| longest.is_some() && (wait.is_none() || wait > *longest))
@@ -81,8 +81,8 @@ impl TaskLock {
                     }
                     false
                 }
-                State::Old => hinders || age(&file, now).is_some_and(|age| age > LITTER),
-                State::Gone => true,
+                LockState::Old => hinders || age(&file, now).is_some_and(|age| age > LITTER),
+                LockState::Gone => true,
             };
             if left && same_file(&file, &path) {
                 let _ = fs::remove_file(&path);

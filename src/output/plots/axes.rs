@@ -26,7 +26,7 @@ pub enum AxisUnits {
 
 /// One dimension: what its values are divided by, and what that leaves.
 #[derive(Clone, Debug, PartialEq)]
-struct Scale {
+struct AxisScale {
     divisor: f64,
     unit: Unit,
 }
@@ -42,9 +42,9 @@ enum Unit {
 /// The units of all axes of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axes {
-    length: Scale,
-    force: Scale,
-    stress: Scale,
+    length: AxisScale,
+    force: AxisScale,
+    stress: AxisScale,
 }
 
 /// One axis: the factor of its values, and its name.
@@ -71,7 +71,7 @@ impl Axes {
         }
         let named = |label: &Option<String>, what: &str| {
             let name = label.clone().unwrap_or_else(|| format!("case's unit of {what}"));
-            Scale { divisor: 1.0, unit: Unit::Named(name) }
+            AxisScale { divisor: 1.0, unit: Unit::Named(name) }
         };
         let units = &case.units;
         Self {
@@ -83,7 +83,7 @@ impl Axes {
 
     /// Without units, for a sphere of this radius and Young's modulus.
     pub fn normalised(radius: f64, youngs_modulus: f64) -> Self {
-        let over = |divisor, name| Scale { divisor, unit: Unit::Over(name) };
+        let over = |divisor, name| AxisScale { divisor, unit: Unit::Over(name) };
         Self {
             length: over(radius, "R"),
             force: over(youngs_modulus * radius * radius, "(E R^2)"),

@@ -6,7 +6,7 @@ use super::View;
 use super::axes::{Dimension, Shown};
 use super::canvas::{Anchor, Canvas, Colour, Drawn, NotFinite, Paint, Pixel, Stroke, Writing};
 use super::chart::nice_step;
-use super::field::{Field, clipped};
+use super::field::{TriangleMesh, clipped};
 use super::style::{BLUE, INK, ORANGE, Picture, rounded, tick, viridis};
 use super::text::text_width;
 
@@ -46,7 +46,7 @@ pub fn plot_contact(points: &[ContactPoint], view: &View) -> Result<Picture, Out
     let side = (width - MARGIN - 24.0).min(520.0);
     let top = below_title(78.0, view);
     Picture::draw("contact", caption, view.sheet.size(width, top + side + FOOT + BAR), |root| {
-        let map = Map { window, scales: &scales, square: Square { left: MARGIN, top, side } };
+        let map = MapSheet { window, scales: &scales, square: Square { left: MARGIN, top, side } };
         map.draw(root, points)?;
         let names = headed(root, "Contact surface")?;
         map.axes(root, [true, true])?;
@@ -100,7 +100,7 @@ fn slip_maps(shown: &[SlipPanel], panels: &[SlipPanel], view: &View) -> Result<P
         for (i, panel) in shown.iter().enumerate() {
             let corner = ((i % columns) as f64 * across, head + down(i / columns));
             let area = root.panel(corner, (across, title + side + FOOT));
-            let map = Map { window, scales: &scales, square: Square { left: MARGIN, top: title, side } };
+            let map = MapSheet { window, scales: &scales, square: Square { left: MARGIN, top: title, side } };
             map.draw(&area, &panel.points)?;
             let place = format!("{} = {}", delta_t.short, tick(rounded(panel.delta_t * delta_t.factor)));
             let ratio = panel.ratio.map(|ratio| format!("F_T/F_N = {:.3}", (1e3 * ratio).round() / 1e3 + 0.0));
@@ -179,13 +179,13 @@ struct Square {
 }
 
 #[derive(Clone, Copy)]
-struct Map<'a> {
+struct MapSheet<'a> {
     window: Window,
     scales: &'a Scales,
     square: Square,
 }
 
-impl Map<'_> {
+impl MapSheet<'_> {
     fn scale(&self) -> f64 {
         0.5 * self.square.side / self.window.reach
     }
@@ -205,7 +205,7 @@ impl Map<'_> {
                 .filter(|point| point.half.is_shown_as(half) && self.window.is_near(point))
                 .filter(|point| point.current_x.is_finite() && point.current_y.is_finite())
                 .collect();
-            let field = Field::new(own.iter().map(|point| self.pixel(point.current_x, point.current_y)).collect());
+            let field = TriangleMesh::new(own.iter().map(|point| self.pixel(point.current_x, point.current_y)).collect());
             // Of a whole sphere half of what is interpolated is shown.
             let middle = self.pixel(0.0, 0.0).1;
             let (from, to) = match (own.iter().any(|point| point.half == Half::Whole), upper) {

@@ -12,12 +12,12 @@ type Corner = (usize, usize);
 
 /// Points and the triangles between them.
 #[derive(Clone, Debug)]
-pub struct Field {
+pub struct TriangleMesh {
     places: Vec<Pixel>,
     triangles: Vec<[usize; 3]>,
 }
 
-impl Field {
+impl TriangleMesh {
     /// Of points in the plane; without triangles if there are none.
     pub fn new(places: Vec<Pixel>) -> Self {
         let points: Vec<Point> = places.iter().map(|&(x, y)| Point { x, y }).collect();
@@ -79,8 +79,8 @@ impl Field {
 /// The part of a closed line inside of a rectangle (Sutherland & Hodgman 1974).
 pub fn clipped(points: &[Pixel], [low, high]: [Pixel; 2]) -> Vec<Pixel> {
     let mut points = points.to_vec();
-    type Side = (fn(Pixel) -> f64, f64, f64);
-    let sides: [Side; 4] = [(|p| p.0, low.0, 1.0), (|p| p.0, high.0, -1.0), (|p| p.1, low.1, 1.0), (|p| p.1, high.1, -1.0)];
+    type ClipSide = (fn(Pixel) -> f64, f64, f64);
+    let sides: [ClipSide; 4] = [(|p| p.0, low.0, 1.0), (|p| p.0, high.0, -1.0), (|p| p.1, low.1, 1.0), (|p| p.1, high.1, -1.0)];
     for (of, limit, sign) in sides {
         let inside = |p: Pixel| sign * (of(p) - limit);
         let mut kept = Vec::with_capacity(points.len());
@@ -119,7 +119,7 @@ mod tests {
     fn a_linear_field_has_straight_levels_and_exact_areas() {
         let places = grid(7);
         let values: Vec<f64> = places.iter().map(|p| p.0 + 0.5 * p.1).collect();
-        let field = Field::new(places);
+        let field = TriangleMesh::new(places);
         // x + y/2 >= 0.6 leaves a trapezium below it of width 0.6 to 0.1.
         let loops = field.at_least(&values, 0.6);
         assert_eq!(loops.len(), 1);
@@ -133,7 +133,7 @@ mod tests {
         let places = grid(5);
         let mut values = vec![1.0; 25];
         values[12] = f64::NAN;
-        let loops = Field::new(places).at_least(&values, 0.5);
+        let loops = TriangleMesh::new(places).at_least(&values, 0.5);
         assert_eq!(loops.len(), 2);
         let areas: Vec<f64> = loops.iter().map(|points| area(points)).collect();
         // The hole runs the other way round, and lies within half a spacing of its point.
@@ -146,7 +146,7 @@ mod tests {
     fn too_few_points_have_no_area_and_lines_end_at_the_rectangle() {
         for places in [vec![], vec![(0.0, 0.0)], vec![(0.0, 0.0), (1.0, 1.0), (2.0, 2.0)]] {
             let values = vec![1.0; places.len()];
-            assert!(Field::new(places).at_least(&values, 0.5).is_empty());
+            assert!(TriangleMesh::new(places).at_least(&values, 0.5).is_empty());
         }
         let square = clipped(&[(-1.0, -1.0), (3.0, -1.0), (3.0, 3.0), (-1.0, 3.0)], [(0.0, 0.0), (2.0, 1.0)]);
         assert!((area(&square).abs() - 2.0).abs() < 1e-12, "{square:?}");

@@ -3,7 +3,7 @@
 use super::{Drive, Observer};
 use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::Settled;
-use crate::compute::{Energies, Fault, Outcome};
+use crate::compute::{Energies, Evaluated, Fault};
 use crate::contact::coulomb::Status;
 use crate::contact::plane::gap;
 use crate::simulation::SimulationError;
@@ -19,7 +19,7 @@ use crate::solver::phases::{Lap, Phase};
 /// What a step leaves that is accepted.
 struct Taken {
     energies: Energies,
-    outcome: Outcome,
+    outcome: Evaluated,
     /// Three a node; of a step on a device right at contact nodes alone.
     displacement: Vec<f64>,
     /// Alike.
@@ -65,7 +65,7 @@ impl Drive<'_> {
             Some(settled) => self.take_from_device(settled),
             None => self.take_from_host(&mut report)?,
         };
-        if let Outcome::Invalid(fault) = taken.outcome {
+        if let Evaluated::Invalid(fault) = taken.outcome {
             return Ok(Some(fault));
         }
         let (wasted, cutbacks) = (std::mem::take(&mut self.place.wasted), std::mem::take(&mut self.place.cutbacks));

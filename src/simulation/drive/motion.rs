@@ -4,14 +4,14 @@ use super::{Drive, Ending, Observer};
 use crate::case::{Hold, Motion, Segment, unit};
 use crate::simulation::SimulationError;
 use crate::simulation::checkpoint::Increment;
-use crate::simulation::path::{Start, Target, straight_targets};
+use crate::simulation::path::{SegmentStart, Target, straight_targets};
 use crate::solver::pose::Pose;
 
 impl Drive<'_> {
     /// Moves the plate in several of its degrees of freedom, in proportion.
     pub(super) fn motion(
         &mut self,
-        start: &Start,
+        start: &SegmentStart,
         to: &Motion,
         hold: Hold,
         observer: &mut dyn Observer,
@@ -35,7 +35,7 @@ impl Drive<'_> {
     /// The direction of a segment along x and y and about z, where it is none along x alone; of
     /// length 1, the turn by what it moves at the contact's edge. `None` of other segments, and of
     /// one that only presses or rolls.
-    pub(super) fn way_of(&self, segment: &Segment, start: &Start) -> Option<[f64; 3]> {
+    pub(super) fn way_of(&self, segment: &Segment, start: &SegmentStart) -> Option<[f64; 3]> {
         match segment {
             Segment::Slip { direction, .. } => {
                 let [x, y] = unit(*direction);
@@ -102,7 +102,7 @@ impl Drive<'_> {
 }
 
 /// Where a motion from `start` ends.
-fn end_of(to: &Motion, start: &Start) -> Target {
+fn end_of(to: &Motion, start: &SegmentStart) -> Target {
     let [about_x, about_y] = to.roll.unwrap_or([start.angles[0], start.angles[1]]);
     let [delta_t, across] = to.shear.unwrap_or([start.delta_t, start.across]);
     let twist = to.twist.unwrap_or(start.angles[2]);

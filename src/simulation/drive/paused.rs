@@ -5,7 +5,7 @@ use super::safe::Safe;
 use crate::compute::{Compute, ComputeError};
 use crate::simulation::checkpoint::{Committed, PathPosition};
 use crate::simulation::problem::Problem;
-use crate::simulation::record::ContactPoint;
+use crate::simulation::record::RecordedPoint;
 use crate::solver::StepReport;
 use crate::solver::newton::Newton;
 
@@ -50,7 +50,7 @@ impl Paused {
 
     /// Every point of the sphere's meshed half that can touch, as the last accepted step left it,
     /// scaled.
-    pub fn points(&self) -> &[ContactPoint] {
+    pub fn points(&self) -> &[RecordedPoint] {
         &self.state.points[..self.newton.own_contacts().min(self.state.points.len())]
     }
 }

@@ -7,14 +7,16 @@ use crate::case::{Hold, ShearTarget};
 use crate::compute::handle::CaseHandle;
 use crate::contact::coulomb::{Friction, Status};
 use crate::simulation::SimulationError;
-use crate::simulation::path::{ShearSteps, Start, Target};
+use crate::simulation::path::{SegmentStart, ShearSteps, Target};
 use crate::simulation::record::StepRecord;
 use crate::solver::iterate::stiffness::SetOff;
 
-/// Full slip: the sticking points carry no more than this share of the normal force.
+/// Full slip: the sticking points carry no more than this share of the normal force. Half and twice
+/// of it: `benches/constants`.
 const STICK_SHARE: f64 = 2e-3;
 /// A release to a share of F_N asks for the force itself when so many steps are left by the
-/// contact's stiffness, which the simulated one exceeds by a fifth at most.
+/// contact's stiffness, which the simulated one exceeds by a fifth at most. Half and twice of it:
+/// `benches/constants`.
 const LANDING: f64 = 1.25;
 /// F_T has stopped rising when it grows by less than this share over a step.
 const PLATEAU: f64 = 1e-3;
@@ -37,7 +39,7 @@ impl Drive<'_> {
 
     /// Withdraws the plate until nothing touches; the steps shorten as the contact shrinks, so that
     /// the residual indentation is sharp.
-    pub(super) fn release(&mut self, start: &Start, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
+    pub(super) fn release(&mut self, start: &SegmentStart, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
         let step = self.resolution().release_step(start);
         if self.place.is_at_segment_start() && (self.state.record.contact_points == 0 || step <= 0.0) {
             observer.note("release: nothing touches, so there is nothing to release");
@@ -59,7 +61,7 @@ impl Drive<'_> {
     /// one, which asks for the force itself.
     pub(super) fn release_to(
         &mut self,
-        start: &Start,
+        start: &SegmentStart,
         share: f64,
         observer: &mut dyn Observer,
     ) -> Result<Ending, SimulationError> {
@@ -90,14 +92,14 @@ impl Drive<'_> {
     /// Shears along x to a displacement, or in any direction, a unit vector, to full slip.
     /// Says whether the segment holds the normal force: that which the one before held, or else
     /// what there is.
-    pub(super) fn set_held_force(&mut self, start: &Start, is_held: bool) {
+    pub(super) fn set_held_force(&mut self, start: &SegmentStart, is_held: bool) {
         self.held_force = is_held.then(|| self.place.held_force.unwrap_or(start.f_n / self.mesh.copies as f64));
         self.place.held_force = self.held_force;
     }
 
     pub(super) fn shear(
         &mut self,
-        start: &Start,
+        start: &SegmentStart,
         shear: ShearTarget,
         direction: [f64; 2],
         hold: Hold,

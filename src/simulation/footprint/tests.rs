@@ -2,7 +2,7 @@ use super::*;
 
 /// Points on a half of a sphere's cap, each for a cell of the same area, which carries what a
 /// pressure over the undeformed chord s exerts on it. What was at s is at `moved` of s.
-fn contact(spacing: f64, reach: f64, pressure: impl Fn(f64) -> f64, moved: impl Fn(f64) -> f64) -> Vec<ContactPoint> {
+fn contact(spacing: f64, reach: f64, pressure: impl Fn(f64) -> f64, moved: impl Fn(f64) -> f64) -> Vec<RecordedPoint> {
     const PARTS: i32 = 10;
     let count = (reach / spacing).ceil() as i32;
     let mut points = Vec::new();
@@ -18,7 +18,7 @@ fn contact(spacing: f64, reach: f64, pressure: impl Fn(f64) -> f64, moved: impl 
         let force = half * spacing * spacing * over_cell / f64::from(PARTS * PARTS);
         // The point of a sphere through the origin at the chord s.
         let outwards = (1.0 - 0.25 * s * s).sqrt();
-        points.push(ContactPoint {
+        points.push(RecordedPoint {
             node: points.len(),
             reference: [x * outwards, y * outwards, 0.5 * s * s],
             position: [x / s * moved(s), y / s * moved(s), 0.0],

@@ -31,15 +31,15 @@ impl HostIterate {
         self.current.u.fill(0.0);
         self.current.h = 0.0;
         let control = Control { h: 0.0, pose: Pose::default(), normal_force: None };
-        let outcome = self.current.evaluate(case, &self.boundary, &control, times)?;
+        let outcome = self.current.evaluate(case, &self.boundary, &*self.opponent, &control, times)?;
         outcome.check().map_err(|fault| StepFailure::Invalid { fault, when: "in the undeformed body" })?;
         fixed_unknowns(mesh, &self.boundary, &self.current.rows, &mut self.fixed);
         match self.linear.matrix_mut() {
             None => return Err(LinalgError::NotUpdated.into()),
-            Some(Matrix::Double(matrix)) => form(matrix, case, &self.boundary, &self.current, None, times)?,
-            Some(Matrix::Single(matrix)) => form(matrix, case, &self.boundary, &self.current, None, times)?,
+            Some(Matrix::Double(matrix)) => form(matrix, case, &self.boundary, &*self.opponent, &self.current, None, times)?,
+            Some(Matrix::Single(matrix)) => form(matrix, case, &self.boundary, &*self.opponent, &self.current, None, times)?,
         }
-        self.boundary.opponent.refresh(&mut self.linear, &self.current, &self.boundary, &self.fixed)?;
+        self.opponent.refresh(&mut self.linear, &self.current, &self.boundary, &self.fixed)?;
         let mut responses = [const { Vec::new() }; MODES];
         for (k, response) in responses.iter_mut().enumerate() {
             self.unit_rhs.fill(0.0);

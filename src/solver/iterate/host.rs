@@ -3,21 +3,25 @@
 use super::{Asked, Correction, Iterate, SetOut};
 use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::{Reading, Vectors};
-use crate::compute::{ComputeError, Outcome};
+use crate::compute::{ComputeError, Evaluated};
 use crate::contact::coulomb::{Friction, Status};
 use crate::linalg::{LinalgError, SolverKind};
 use crate::mesh::Mesh;
+use crate::solver::boundary::Boundary;
 use crate::solver::opponent::Opponent;
+use crate::solver::opponent::plane::Plane;
 use crate::solver::outcome::{Halt, StepFailure, Worst};
 use crate::solver::phases::PhaseTimes;
-use crate::solver::system::{Boundary, Trial};
 use crate::solver::systems::Systems;
+use crate::solver::trial::Trial;
 use crate::solver::{Control, SolverError};
 
 /// Iterates of one case with everything that is kept of them between steps.
 pub struct HostIterate {
-    /// Which displacements are prescribed, and the opponent.
+    /// Which displacements are prescribed.
     pub(super) boundary: Boundary,
+    /// What the body is pressed against.
+    pub(super) opponent: Box<dyn Opponent>,
     pub(super) linear: Systems,
     pub(super) current: Trial,
     candidate: Trial,
@@ -49,6 +53,7 @@ impl HostIterate {
     pub fn new(mesh: &Mesh, linear: Systems) -> Self {
         Self {
             boundary: Boundary::new(mesh),
+            opponent: Box::new(Plane),
             linear,
             current: Trial::default(),
             candidate: Trial::default(),
@@ -71,7 +76,7 @@ impl HostIterate {
 
     /// Sets what the body is pressed against, in place of the plane.
     pub fn against(&mut self, opponent: Box<dyn Opponent>) {
-        self.boundary.opponent = opponent;
+        self.opponent = opponent;
     }
 
     /// The current iterate.
@@ -79,7 +84,12 @@ impl HostIterate {
         &self.current
     }
 
-    /// Which displacements are prescribed, and the opponent.
+    /// What the body is pressed against.
+    pub fn opponent(&self) -> &dyn Opponent {
+        &*self.opponent
+    }
+
+    /// Which displacements are prescribed.
     pub fn boundary(&self) -> &Boundary {
         &self.boundary
     }
@@ -92,15 +102,15 @@ impl HostIterate {
 
     /// Sets out for a step (see [`Opponent::set_out`]).
     pub fn set_out(&mut self, mesh: &Mesh, start: &[f64], expected: &[f64], symmetric: bool) {
-        self.boundary.opponent.set_out(mesh, start, expected, symmetric);
+        self.opponent.set_out(mesh, start, expected, symmetric);
     }
 
     /// What Newton's method decides by of a trial, as seen from the current iterate.
-    fn reading(&self, trial: &Trial, outcome: Outcome, case: &CaseHandle<'_>, control: &Control) -> Reading {
-        if outcome != Outcome::Valid {
+    fn reading(&self, trial: &Trial, outcome: Evaluated, case: &CaseHandle<'_>, control: &Control) -> Reading {
+        if outcome != Evaluated::Valid {
             return Reading::of_nothing(outcome);
         }
-        let held = || trial.contact_force(&case.model().mesh, &self.boundary)[2];
+        let held = || trial.contact_force(&case.model().mesh, &self.boundary, &*self.opponent)[2];
         let stick = case.model().friction == Friction::Stick;
         Reading {
             outcome,
@@ -146,7 +156,7 @@ impl HostIterate {
     /// Over a plane, its systems solved with multigrid: what a device that keeps iterates does by
     /// itself.
     pub fn is_over_plane_by_multigrid(&self) -> bool {
-        self.boundary.opponent.is_plane() && self.linear.kind() == SolverKind::Multigrid
+        self.opponent.is_plane() && self.linear.kind() == SolverKind::Multigrid
     }
 
     /// Takes the memory of vectors and matrices, if it has not yet: on a device that keeps iterates
@@ -179,13 +189,13 @@ impl HostIterate {
         vectors: &Vectors,
         h: f64,
         control: &Control,
-    ) -> Result<Outcome, SolverError> {
+    ) -> Result<Evaluated, SolverError> {
         self.furnish(&case.model().mesh.clone())?;
         self.current.u.copy_from_slice(&vectors.displacement);
         self.current.force.copy_from_slice(&vectors.force);
         self.current.h = h;
         self.boundary.frictionless.copy_from_slice(&vectors.sliding);
-        Ok(self.current.assess(case, &self.boundary, control, &mut PhaseTimes::default())?)
+        Ok(self.current.assess(case, &self.boundary, &*self.opponent, control, &mut PhaseTimes::default())?)
     }
 
     /// Lets the points of the current iterate slide that have come off and are down again; returns
@@ -236,7 +246,7 @@ impl HostIterate {
         control: &Control,
         length: f64,
         times: &mut PhaseTimes,
-    ) -> Result<Outcome, ComputeError> {
+    ) -> Result<Evaluated, ComputeError> {
         for ((u, u0), d) in self.candidate.u.iter_mut().zip(&self.current.u).zip(&self.delta) {
             *u = u0 + length * d;
         }
@@ -245,7 +255,7 @@ impl HostIterate {
             // Rounding must not leave the plate a hair from where it belongs.
             self.boundary.place_plate(&mut self.candidate.u, self.candidate.h, &control.pose);
         }
-        self.candidate.evaluate(case, &self.boundary, control, times)
+        self.candidate.evaluate(case, &self.boundary, &*self.opponent, control, times)
     }
 }
 
@@ -265,27 +275,27 @@ impl Iterate for HostIterate {
             self.current.h = control.h;
             self.current.u.copy_from_slice(guess);
             self.boundary.place_plate(&mut self.current.u, self.current.h, &control.pose);
-            let mut outcome = self.current.evaluate(case, &self.boundary, control, times)?;
-            let landed = if outcome == Outcome::Valid { self.let_landed_slide() } else { 0 };
+            let mut outcome = self.current.evaluate(case, &self.boundary, &*self.opponent, control, times)?;
+            let landed = if outcome == Evaluated::Valid { self.let_landed_slide() } else { 0 };
             if landed > 0 {
-                outcome = self.current.assess(case, &self.boundary, control, times)?;
+                outcome = self.current.assess(case, &self.boundary, &*self.opponent, control, times)?;
             }
-            if outcome == Outcome::Valid {
+            if outcome == Evaluated::Valid {
                 return Ok(Reading { landed, ..self.reading(&self.current, outcome, case, control) });
             }
         }
         self.current.h = if control.normal_force.is_some() { start.h } else { control.h };
         self.current.u.copy_from_slice(start.displacement);
         // The plate's increment enters through the linear system.
-        let mut outcome = self.current.evaluate(case, &self.boundary, control, times)?;
-        if outcome == Outcome::Valid && self.current.force_scale == 0.0 {
+        let mut outcome = self.current.evaluate(case, &self.boundary, &*self.opponent, control, times)?;
+        if outcome == Evaluated::Valid && self.current.force_scale == 0.0 {
             // Nothing touches: the body follows the plate as it is.
             self.follow_plate(&mesh, start, control);
             self.boundary.place_plate(&mut self.current.u, self.current.h, &control.pose);
             // A shift leaves the forces as they are. Evaluated anew they would be those of an
             // unloaded body, nothing but rounding, and which points stick would hang on it: the
             // step would go another way on every device.
-            outcome = self.current.assess(case, &self.boundary, control, times)?;
+            outcome = self.current.assess(case, &self.boundary, &*self.opponent, control, times)?;
         }
         Ok(self.reading(&self.current, outcome, case, control))
     }
@@ -317,7 +327,7 @@ impl Iterate for HostIterate {
         let outcome = self.evaluate(case, control, length, times)?;
         self.tried = length;
         let reading = self.reading(&self.candidate, outcome, case, control);
-        if outcome != Outcome::Valid {
+        if outcome != Evaluated::Valid {
             return Ok(reading);
         }
         Ok(Reading { slope: self.slope(&self.candidate), ..reading })
@@ -355,7 +365,7 @@ impl Iterate for HostIterate {
         if landed == 0 {
             return Ok(None);
         }
-        let outcome = self.current.assess(case, &self.boundary, control, times)?;
+        let outcome = self.current.assess(case, &self.boundary, &*self.opponent, control, times)?;
         Ok(Some((landed, self.reading(&self.current, outcome, case, control))))
     }
 

@@ -5,18 +5,22 @@ use super::host::HostIterate;
 use super::{Asked, Correction};
 use crate::compute::call::OfBlocks;
 use crate::compute::handle::CaseHandle;
-use crate::compute::linear::{Ended, Side, SideReport, Solved, System};
+use crate::compute::linear::{Ended, Side, SideReport, SolveRequest, Solved};
 use crate::linalg::{BlockMatrix, LinalgError};
 use crate::mesh::Mesh;
 use crate::solver::SolverError;
+use crate::solver::boundary::Boundary;
 use crate::solver::contact_rows::{apply_contact, turn};
+use crate::solver::opponent::Opponent;
 use crate::solver::outcome::{Halt, StepFailure};
 use crate::solver::phases::{Lap, Phase, PhaseTimes};
-use crate::solver::system::{Boundary, Trial, fixed_unknowns, plate_functional, right_hand_side};
+use crate::solver::system::{fixed_unknowns, plate_functional, right_hand_side};
 use crate::solver::systems::Matrix;
+use crate::solver::trial::Trial;
 
 /// Share of the forces at the contact to which the response to a unit indentation is solved, which
-/// gives the change of h that a missing normal force asks for.
+/// gives the change of h that a missing normal force asks for. Half and twice of it:
+/// `benches/constants`.
 pub(super) const UNIT_RESPONSE: f64 = 0.01;
 
 /// Krylov iterations that the first system of a step is expected to take.
@@ -97,7 +101,7 @@ impl HostIterate {
             });
         }
         let (displacement, rows) = (self.current.u.as_slice().into(), self.current.rows.clone());
-        let system = System { displacement, rows, fixed: self.fixed.clone(), sides };
+        let system = SolveRequest { displacement, rows, fixed: self.fixed.clone(), sides };
         let Solved { outcome, solutions } = case.solve(system)?;
         if solutions.is_empty() {
             return Ok(There::NotSolved { krylov: 0 });
@@ -124,7 +128,7 @@ impl HostIterate {
             delta_h = self.move_plate(target, reports[0].along, unit.along)?;
         }
         self.delta.copy_from_slice(&self.correction);
-        self.boundary.opponent.expand(&self.current, mesh, &mut self.delta);
+        self.opponent.expand(&self.current, mesh, &mut self.delta);
         self.delta_h = delta_h;
         Ok(There::Solved(Correction { krylov, fallback: false, delta_h, slope: 0.0 }))
     }
@@ -155,11 +159,11 @@ impl HostIterate {
         let held = control.normal_force.is_some().then_some(&mut self.functional);
         match self.linear.matrix_mut() {
             None => return Err(LinalgError::NotUpdated.into()),
-            Some(Matrix::Double(matrix)) => form(matrix, case, &self.boundary, &self.current, held, times)?,
-            Some(Matrix::Single(matrix)) => form(matrix, case, &self.boundary, &self.current, held, times)?,
+            Some(Matrix::Double(matrix)) => form(matrix, case, &self.boundary, &*self.opponent, &self.current, held, times)?,
+            Some(Matrix::Single(matrix)) => form(matrix, case, &self.boundary, &*self.opponent, &self.current, held, times)?,
         }
         let mut lap = Lap::start();
-        self.boundary.opponent.refresh(&mut self.linear, &self.current, &self.boundary, &self.fixed)?;
+        self.opponent.refresh(&mut self.linear, &self.current, &self.boundary, &self.fixed)?;
         lap.end(times, Phase::LinearUpdate);
         self.correction.fill(0.0);
         let solved = match self.linear.solve(&self.rhs, eta, &mut self.correction, true) {
@@ -178,18 +182,18 @@ impl HostIterate {
                 Err(LinalgError::Stalled { iterations, .. }) => krylov += iterations,
                 Err(error) => return Err(StepFailure::Linear(error.to_string()).into()),
             }
-            let (current, boundary, delta) = (&self.current, &self.boundary, &mut self.delta);
+            let (current, opponent, delta) = (&self.current, &self.opponent, &mut self.delta);
             let mut along = |x: &[f64]| {
                 delta.copy_from_slice(x);
-                boundary.opponent.expand(current, mesh, delta);
+                opponent.expand(current, mesh, delta);
                 self.functional.iter().zip(&*delta).map(|(w, x)| w * x).sum::<f64>()
             };
             let (by_delta, by_unit) = (along(&self.correction), along(&self.unit_response));
             delta_h = self.move_plate(target, by_delta, by_unit)?;
         }
         self.delta.copy_from_slice(&self.correction);
-        self.boundary.opponent.expand(&self.current, mesh, &mut self.delta);
-        self.boundary.opponent.leave_even_correction(&mut self.delta, &mut self.correction);
+        self.opponent.expand(&self.current, mesh, &mut self.delta);
+        self.opponent.leave_even_correction(&mut self.delta, &mut self.correction);
         lap.end(times, Phase::LinearSolve);
         self.delta_h = delta_h;
         Ok(Correction { krylov, fallback, delta_h, slope: 0.0 })
@@ -205,7 +209,7 @@ impl HostIterate {
             let mut guess = vec![0.0; self.unit_rhs.len()];
             let alone = self.linear.residual_norm(&self.unit_rhs, &guess)?;
             guess.iter_mut().skip(2).step_by(3).take(self.boundary.own_nodes).for_each(|z| *z = -1.0);
-            self.boundary.opponent.contract(&self.current, mesh, &mut guess);
+            self.opponent.contract(&self.current, mesh, &mut guess);
             let moving = self.linear.residual_norm(&self.unit_rhs, &guess)?;
             self.unit_scale = if alone > 0.0 { (moving / alone).min(1.0) } else { 1.0 };
             self.unit_response.copy_from_slice(&guess);
@@ -220,6 +224,7 @@ pub(super) fn form<T: OfBlocks>(
     matrix: &mut BlockMatrix<T>,
     case: &mut CaseHandle<'_>,
     boundary: &Boundary,
+    opponent: &dyn Opponent,
     current: &Trial,
     held: Option<&mut Vec<f64>>,
     times: &mut PhaseTimes,
@@ -231,7 +236,7 @@ pub(super) fn form<T: OfBlocks>(
     if let Some(functional) = held {
         plate_functional(matrix, &boundary.plate, functional);
     }
-    if boundary.opponent.is_in_matrix() {
+    if opponent.is_in_matrix() {
         turn(matrix, mesh, &current.frames);
         apply_contact(matrix, mesh, &current.rows);
     }

@@ -6,7 +6,7 @@ use super::{Asked, Correction, Extrapolation, Iterate, SetOut};
 use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::{Ask, Begin, Correct, Corrected, From, Plate, Reading, Reply, Settled, Vectors};
 use crate::compute::linear::Ended;
-use crate::compute::{ComputeError, Fault, Outcome};
+use crate::compute::{ComputeError, Evaluated, Fault};
 use crate::contact::coulomb::Friction;
 use crate::solver::outcome::{Halt, StepFailure, Worst};
 use crate::solver::phases::{Lap, Phase, PhaseTimes};
@@ -107,7 +107,7 @@ impl ResidentIterate {
     }
 
     /// The current iterate on the host, and whether it can be gone on from.
-    fn bring(&mut self, case: &mut CaseHandle<'_>, control: &Control) -> Result<Outcome, SolverError> {
+    fn bring(&mut self, case: &mut CaseHandle<'_>, control: &Control) -> Result<Evaluated, SolverError> {
         match self.ask(case, control, Ask::Bring)? {
             Reply::Vectors(vectors) => self.host.take_over(case, &vectors, self.h, control),
             other => Err(unexpected(&other)),
@@ -156,7 +156,7 @@ impl Iterate for ResidentIterate {
         let mut reading = self.begin_from(case, control, From::Start)?;
         let missing = [control.pose.shift[0] - start.pose.shift[0], start.h - self.h];
         self.is_placed = missing.iter().all(|u| u.abs() <= 1e-14);
-        if reading.outcome == Outcome::Valid && reading.force_scale == 0.0 {
+        if reading.outcome == Evaluated::Valid && reading.force_scale == 0.0 {
             // Nothing touches: the body follows the plate as it is.
             reading = self.begin_from(case, control, From::Shift(missing))?;
             self.is_placed = true;

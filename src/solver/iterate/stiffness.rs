@@ -19,7 +19,7 @@ use crate::solver::system::fixed_unknowns;
 use crate::solver::systems::{Matrix, OneBody, Systems};
 
 /// Share of the forces at the contact to which the responses to a unit motion are solved. What they
-/// lack counts twice in their energies.
+/// lack counts twice in their energies. Half and twice of it: `benches/constants`.
 const UNIT_MOTION: f64 = 1e-3;
 /// Systems that are solved at most, and the change of the stiffness at which another would find
 /// nothing new.
@@ -95,7 +95,7 @@ impl HostIterate {
         self.furnish(mesh)?;
         self.current.u.copy_from_slice(start.displacement);
         let control = Control { h: self.current.h, pose: Pose::default(), normal_force: None };
-        let outcome = self.current.evaluate(case, &self.boundary, &control, times)?;
+        let outcome = self.current.evaluate(case, &self.boundary, &*self.opponent, &control, times)?;
         outcome.check().map_err(|fault| StepFailure::Invalid { fault, when: "at the start of a shear" })?;
         fixed_unknowns(mesh, &self.boundary, &self.current.rows, &mut self.fixed);
         let mut motions = Motions::default();
@@ -124,10 +124,10 @@ impl HostIterate {
         let mesh = &case.model().mesh.clone();
         match self.linear.matrix_mut() {
             None => return Err(LinalgError::NotUpdated.into()),
-            Some(Matrix::Double(matrix)) => form(matrix, case, &self.boundary, &self.current, None, times)?,
-            Some(Matrix::Single(matrix)) => form(matrix, case, &self.boundary, &self.current, None, times)?,
+            Some(Matrix::Double(matrix)) => form(matrix, case, &self.boundary, &*self.opponent, &self.current, None, times)?,
+            Some(Matrix::Single(matrix)) => form(matrix, case, &self.boundary, &*self.opponent, &self.current, None, times)?,
         }
-        self.boundary.opponent.refresh(&mut self.linear, &self.current, &self.boundary, &self.fixed)?;
+        self.opponent.refresh(&mut self.linear, &self.current, &self.boundary, &self.fixed)?;
         self.respond(mesh, start.sideways().0, &mut motions.sideways)?;
         if start.holds_force {
             self.respond(mesh, DOWN, &mut motions.down)?;
@@ -142,8 +142,8 @@ impl HostIterate {
             stiffness -= share * work(&down, &by_sideways);
             motion.iter_mut().zip(&down).for_each(|(x, down)| *x -= share * down);
         }
-        if self.boundary.opponent.is_in_matrix() {
-            self.boundary.opponent.expand(&self.current, mesh, &mut motion);
+        if self.opponent.is_in_matrix() {
+            self.opponent.expand(&self.current, mesh, &mut motion);
         }
         motions.of_both = motion;
         Ok(stiffness)
@@ -160,7 +160,7 @@ impl HostIterate {
         let mut as_one = vec![0.0; self.unit_rhs.len()];
         let alone = self.linear.residual_norm(&self.unit_rhs, &as_one)?;
         as_one.chunks_exact_mut(3).take(self.boundary.own_nodes).for_each(|u| u.copy_from_slice(&unit));
-        self.boundary.opponent.contract(&self.current, mesh, &mut as_one);
+        self.opponent.contract(&self.current, mesh, &mut as_one);
         let moving = self.linear.residual_norm(&self.unit_rhs, &as_one)?;
         if motion.is_empty() {
             *motion = as_one;
@@ -175,8 +175,8 @@ impl HostIterate {
     /// of contact stand in the matrix, in their frames.
     pub(super) fn forces_along(&mut self, mesh: &Mesh, response: &[f64]) -> Result<(Vec<f64>, Vec<f64>), Halt> {
         let mut motion = response.to_vec();
-        if !self.boundary.opponent.is_in_matrix() {
-            self.boundary.opponent.expand(&self.current, mesh, &mut motion);
+        if !self.opponent.is_in_matrix() {
+            self.opponent.expand(&self.current, mesh, &mut motion);
         }
         let mut forces = vec![0.0; motion.len()];
         match self.linear.matrix_mut() {

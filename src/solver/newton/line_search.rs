@@ -15,7 +15,7 @@ const STEP_LENGTHS: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.03, 0.01];
 /// falls along it (the tangent is elastic, the answer plastic). It is taken then, if the line
 /// search found nothing longer than this and the merit does not grow by more than this factor: the
 /// next tangent knows of the flow. Under full stick it is taken whatever the energy does: the next
-/// active set knows of the points that come off.
+/// active set knows of the points that come off. Half and twice of either: `benches/constants`.
 const CREEPING: f64 = 0.03;
 const DOWNHILL_MERIT: f64 = 4.0;
 /// A correction from points that flow to points that do not goes too far: the energy falls along

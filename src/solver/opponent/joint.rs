@@ -17,10 +17,11 @@ use crate::contact::interface::{Interface, Symmetry};
 use crate::linalg::{LinalgError, SolverKind};
 use crate::mesh::Mesh;
 use crate::mesh::pattern::Pattern;
+use crate::solver::boundary::Boundary;
 use crate::solver::outcome::Halt;
-use crate::solver::system::{Boundary, Trial};
 use crate::solver::systems::tied::Tied;
 use crate::solver::systems::{Systems, of_another_opponent};
+use crate::solver::trial::Trial;
 
 /// Two bodies that deform, as an equal pair and two unlike ones differ.
 pub trait Bodies: Debug + Send + Sync {

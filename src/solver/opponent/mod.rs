@@ -15,9 +15,10 @@ use std::fmt::Debug;
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::boundary::Boundary;
 use super::outcome::Halt;
-use super::system::{Boundary, Trial};
 use super::systems::{OneBody, Systems};
+use super::trial::Trial;
 use crate::compute::ComputeError;
 use crate::compute::handle::CaseHandle;
 use crate::contact::coulomb::{Friction, Rows, Status};

@@ -7,7 +7,8 @@ use crate::compute::handle::CaseHandle;
 use crate::contact::coulomb::{Friction, Point, Status, contact_rows};
 use crate::contact::plane::gap;
 use crate::mesh::Mesh;
-use crate::solver::system::{Boundary, Trial};
+use crate::solver::boundary::Boundary;
+use crate::solver::trial::Trial;
 
 /// The rigid plane.
 #[derive(Clone, Copy, Debug)]

@@ -13,7 +13,8 @@ use crate::contact::coulomb::{CONTACT_WEIGHT, Point, Status, contact_rows};
 use crate::contact::frame::{from_frame, to_frame};
 use crate::contact::rigid::Rigid;
 use crate::mesh::Mesh;
-use crate::solver::system::{Boundary, Trial};
+use crate::solver::boundary::Boundary;
+use crate::solver::trial::Trial;
 
 /// A rigid sphere, and where the step started.
 #[derive(Clone, Debug)]

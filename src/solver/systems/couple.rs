@@ -29,13 +29,13 @@ pub struct CoupleSolver {
     tie: Tie<CoupleInterface>,
     /// Which body is the slave.
     slave: usize,
-    bodies: [Body; 2],
+    bodies: [BodyPart; 2],
     work: Work,
 }
 
 /// One body's part of the preconditioner.
 #[derive(Debug)]
-struct Body {
+struct BodyPart {
     /// Its unknowns, and its blocks among those of the matrix.
     unknowns: Range<usize>,
     blocks: Range<usize>,
@@ -56,7 +56,7 @@ struct Work {
     r: Vec<f64>,
 }
 
-impl Body {
+impl BodyPart {
     fn new(mesh: &Mesh, body: usize, whole: &Pattern, mirror: &[u32]) -> Result<Self, LinalgError> {
         let (node, element, prolongations, half) = match &mesh.couple {
             Some(couple) => (couple.node, couple.element, couple.hierarchies[body].as_slice(), &couple.halves[body]),
@@ -104,7 +104,7 @@ impl CoupleSolver {
     pub fn new(mesh: &Mesh, pattern: &Pattern, slave: usize, symmetry: &Symmetry) -> Result<Self, LinalgError> {
         let n = 3 * pattern.rows();
         let zero = || vec![0.0; n];
-        let body = |body| Body::new(mesh, body, pattern, &symmetry.nodes);
+        let body = |body| BodyPart::new(mesh, body, pattern, &symmetry.nodes);
         Ok(Self {
             tie: Tie::new(mesh, pattern, symmetry),
             slave,

@@ -13,7 +13,7 @@ use crate::mesh::Mesh;
 const RESTART: usize = 60;
 const MAX_ITERATIONS: usize = 120;
 /// A system that stalls is good enough to go on from at this relative residual: the line search
-/// judges what it gives.
+/// judges what it gives. Half and twice of it: `benches/constants`.
 const STALLED: f64 = 0.3;
 
 /// What every such solver has: the tangent, the interface, and the part of the system that is left

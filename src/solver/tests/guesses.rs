@@ -78,7 +78,7 @@ impl Guesser {
             }
             (Device::ComesToNothing, Ask::Begin(_)) => reading(1.0),
             (Device::ComesToNothing, Ask::Correct(_)) => {
-                let tangent = Outcome::Invalid(Fault::Inverted { element: 3, point: 1 });
+                let tangent = Evaluated::Invalid(Fault::Inverted { element: 3, point: 1 });
                 Reply::Corrected(Corrected { tangent, ..Corrected::default() })
             }
             (_, other) => panic!("{other:?}"),

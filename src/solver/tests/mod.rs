@@ -15,7 +15,7 @@ use super::newton::Newton;
 use super::{Control, Settings, StepFailure, StepOutcome, StepReport};
 use crate::compute::cpu::Cpu;
 use crate::compute::handle::at;
-use crate::compute::{CaseModel, Compute, Energies, Fault, Outcome};
+use crate::compute::{CaseModel, Compute, Energies, Evaluated, Fault};
 use crate::contact::coulomb::{Friction, Status};
 use crate::linalg::{LinearSolver, Pattern, SolverKind};
 use crate::material::hardening::FlowStress;
@@ -88,7 +88,7 @@ impl Rig {
     pub fn commit(&mut self) {
         let accepted = self.newton.accepted();
         let (energies, outcome) = at(&mut self.backend, 0).commit(&accepted.u).unwrap();
-        assert_eq!(outcome, Outcome::Valid);
+        assert_eq!(outcome, Evaluated::Valid);
         self.u.clone_from(&accepted.u);
         self.h = accepted.h;
         self.energies = energies;

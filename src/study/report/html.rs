@@ -20,13 +20,13 @@ pub fn escape(text: &str) -> String {
 
 /// A table; cells are HTML already.
 #[derive(Clone, Debug, Default)]
-pub struct Table {
+pub struct HtmlTable {
     head: String,
     rows: String,
     text_columns: Vec<usize>,
 }
 
-impl Table {
+impl HtmlTable {
     /// With this header; `text_columns` are those that are set to the left.
     pub fn new<S: AsRef<str>>(header: &[S], text_columns: &[usize]) -> Self {
         let mut table = Self { text_columns: text_columns.to_vec(), ..Self::default() };

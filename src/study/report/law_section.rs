@@ -1,7 +1,7 @@
 //! The law in the report: formulas with their constants, what they were compared with, errors,
 //! range.
 
-use super::html::{Table, escape, formula, number, percent};
+use super::html::{HtmlTable, escape, formula, number, percent};
 use crate::law::Law;
 use crate::law::report::{Errors, RegionError};
 
@@ -51,7 +51,7 @@ pub fn law_section(law: &Law) -> String {
         "<h3>What was compared</h3>\n<p>Fits to the study alone, and fits drawn to the prior with a weight \
          (of the normal problem two, for a0 and F_N0). In bold what was kept; the baselines have no constants.</p>\n",
     );
-    let mut table = Table::new(
+    let mut table = HtmlTable::new(
         &["fitted from", "constants", "F<sub>T</sub> rms", "F<sub>T</sub> max", "F<sub>N</sub> rms", "F<sub>N</sub> max"],
         &[0],
     );
@@ -61,7 +61,7 @@ pub fn law_section(law: &Law) -> String {
         table.row(if candidate.kept { "kept" } else { "" }, &cells);
     }
     html.push_str(&table.html());
-    let mut table = Table::new(
+    let mut table = HtmlTable::new(
         &["normal problem", "constants", "a<sub>0</sub> rms", "a<sub>0</sub> max", "F<sub>N0</sub> rms", "F<sub>N0</sub> max"],
         &[0],
     );
@@ -76,7 +76,7 @@ pub fn law_section(law: &Law) -> String {
 
 fn validity(law: &Law) -> String {
     let v = &law.validity;
-    let mut table = Table::new(&["quantity", "from", "to"], &[0]);
+    let mut table = HtmlTable::new(&["quantity", "from", "to"], &[0]);
     for (name, range) in [
         ("Lambda", v.lambda),
         ("mu", v.friction),
@@ -96,7 +96,7 @@ fn errors(errors: &Errors) -> [String; 4] {
 
 fn regions(rows: &[RegionError]) -> String {
     let header = ["region", "cases", "F<sub>T</sub> rms", "F<sub>T</sub> max", "F<sub>N</sub> rms", "F<sub>N</sub> max"];
-    let mut table = Table::new(&header, &[0]);
+    let mut table = HtmlTable::new(&header, &[0]);
     for row in rows {
         let mut cells = vec![formula(&row.region), row.errors.cases.to_string()];
         cells.extend(errors(&row.errors));

@@ -7,7 +7,7 @@ mod law_section;
 use std::fs;
 use std::path::PathBuf;
 
-use self::html::{Table, escape, grid_value, number, percent};
+use self::html::{HtmlTable, escape, grid_value, number, percent};
 use super::row::{FIRST_COLUMNS, NUMBERS};
 use super::{StudyDirectory, StudyError};
 use crate::bounded;
@@ -40,7 +40,7 @@ pub fn write_report(
         contacts.extend(NormalContact::read(&OutputDirectory::existing(root.join(&row.directory)))?);
     }
     let pictures = study_pictures(&contacts, &data, law, Sheet::default())?;
-    let html = Report { directory, table: &table, data: &data, law }.html(&pictures);
+    let html = StudyPage { directory, table: &table, data: &data, law }.html(&pictures);
     let mut written = Vec::new();
     let own = (sheet != Sheet::default()).then(|| study_pictures(&contacts, &data, law, sheet)).transpose()?;
     for picture in own.as_ref().unwrap_or(&pictures) {
@@ -53,14 +53,14 @@ pub fn write_report(
     Ok(written)
 }
 
-struct Report<'a> {
+struct StudyPage<'a> {
     directory: &'a StudyDirectory,
     table: &'a StudyTable,
     data: &'a StudyData,
     law: Option<&'a Law>,
 }
 
-impl Report<'_> {
+impl StudyPage<'_> {
     fn html(&self, pictures: &[Picture]) -> String {
         let root = self.directory.root();
         let root = fs::canonicalize(root).unwrap_or_else(|_| root.to_owned());
@@ -126,7 +126,7 @@ impl Report<'_> {
         );
         let keys = self.keys();
         if !keys.is_empty() {
-            let mut table = Table::new(&["varied", "values"], &[0, 1]);
+            let mut table = HtmlTable::new(&["varied", "values"], &[0, 1]);
             for key in keys {
                 let mut values: Vec<&str> = Vec::new();
                 for row in rows {
@@ -156,7 +156,7 @@ impl Report<'_> {
         header.extend(keys.iter().map(|key| short(key)));
         header.extend(["status".to_owned(), "reason".to_owned()]);
         let columns: Vec<usize> = (0..header.len()).collect();
-        let mut table = Table::new(&header, &columns);
+        let mut table = HtmlTable::new(&header, &columns);
         for row in failed {
             let mut cells = vec![escape(&row.id)];
             cells.extend(keys.iter().map(|key| grid_value(self.table.cell(row, key))));
@@ -179,7 +179,7 @@ impl Report<'_> {
         header.push("for a law".to_owned());
         let mut text: Vec<usize> = (0..2 + keys.len()).collect();
         text.push(header.len() - 1);
-        let mut table = Table::new(&header, &text);
+        let mut table = HtmlTable::new(&header, &text);
         for row in &self.table.rows {
             let mut cells = vec![escape(&row.id), escape(&row.status)];
             cells.extend(keys.iter().map(|key| grid_value(self.table.cell(row, key))));

@@ -9,7 +9,7 @@
 //! its slaves there, and functions that are dual on that share; those of nodes that are no slaves
 //! go to the images of slaves that they face. All functions add up to one everywhere.
 
-use super::mortar::{COVERED, Face, Grid, SLIVER, Weights, add, dual_functions};
+use super::mortar::{COVERED, Face, FaceGrid, GapWeights, SLIVER, add, dual_functions};
 use super::polygon::{Point, area, clip, each_point, gauss_rules};
 
 /// A node is a slave only so far from the images of others, in elements. Meshes that lie half an
@@ -85,10 +85,10 @@ fn heirs(place: Point, near: &[usize], images: &[Face], is_slave: &[bool]) -> Ve
 
 /// The weights of all slave nodes whose faces meet the image; arguments as of
 /// [`super::mortar::self_image_weights`].
-pub fn inverted_image_weights(points: &[Point], faces: &[[usize; 4]], size: &[f64]) -> Vec<Weights> {
+pub fn inverted_image_weights(points: &[Point], faces: &[[usize; 4]], size: &[f64]) -> Vec<GapWeights> {
     let is_slave = slaves(points, size);
     let images: Vec<Face> = faces.iter().map(|f| Face::new(f.map(|n| points[n].map(|x| -x)), *f)).collect();
-    let grid = Grid::new(&images);
+    let grid = FaceGrid::new(&images);
     let mut own: Vec<Vec<(usize, f64)>> = vec![Vec::new(); points.len()];
     let mut image = own.clone();
     for nodes in faces.iter().filter(|nodes| nodes.iter().any(|&n| is_slave[n])) {
@@ -155,7 +155,7 @@ pub fn inverted_image_weights(points: &[Point], faces: &[[usize; 4]], size: &[f6
             entries.iter().map(|&(m, w)| (m, w / by)).filter(|(_, w)| w.abs() > 1e-12).collect()
         };
         let (own, image) = (normalised(&own[n], area), normalised(&image[n], faced));
-        (area > 0.0 && faced > 0.0).then_some(Weights { slave: n, own, image, area, at_seam: false })
+        (area > 0.0 && faced > 0.0).then_some(GapWeights { slave: n, own, image, area, at_seam: false })
     });
     rows.collect()
 }

@@ -15,7 +15,7 @@ use super::polygon::{MOST_POINTS, Point, area, clip, clip_at_seam, each_point, g
 /// What the nodes of both sides contribute to the weighted gap of one slave node. The weights of
 /// each side add up to one.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Weights {
+pub struct GapWeights {
     /// The slave node.
     pub slave: usize,
     /// Nodes of the surface itself, and their weights.
@@ -44,10 +44,10 @@ const OWN_IMAGE: f64 = 0.25;
 /// whose faces meet the image. `points` are the positions of the surface's nodes in the plane,
 /// `faces` its quadrilaterals (either sense of rotation), `tolerance` the distance to the seam that
 /// counts as none.
-pub fn self_image_weights(points: &[Point], faces: &[[usize; 4]], size: &[f64], tolerance: f64) -> Vec<Weights> {
+pub fn self_image_weights(points: &[Point], faces: &[[usize; 4]], size: &[f64], tolerance: f64) -> Vec<GapWeights> {
     let is_slave = |n: usize| points[n][0] >= -MARGIN * size[n];
     let images: Vec<Face> = faces.iter().map(|f| Face::new(f.map(|n| [-points[n][0], points[n][1]]), *f)).collect();
-    let grid = Grid::new(&images);
+    let grid = FaceGrid::new(&images);
     let mut own: Vec<Vec<(usize, f64)>> = vec![Vec::new(); points.len()];
     let mut image = own.clone();
     for nodes in faces {
@@ -107,7 +107,7 @@ pub fn self_image_weights(points: &[Point], faces: &[[usize; 4]], size: &[f64], 
         };
         let (own, image) = (normalised(&own[n], area), normalised(&image[n], faced));
         let itself = image.iter().find(|e| e.0 == n).map_or(0.0, |e| e.1);
-        rows.push(Weights { slave: n, own, image, area, at_seam: points[n][0] < 0.5 * size[n] || itself > OWN_IMAGE });
+        rows.push(GapWeights { slave: n, own, image, area, at_seam: points[n][0] < 0.5 * size[n] || itself > OWN_IMAGE });
     }
     rows
 }
@@ -124,10 +124,10 @@ pub struct Surface<'a> {
 
 /// The weights of the slave nodes of one surface against another one: of those whose faces are all
 /// covered by it. `own` is the node itself with the weight one, `image` are nodes of the master.
-pub fn weights_between(slave: Surface<'_>, master: Surface<'_>) -> Vec<Weights> {
+pub fn weights_between(slave: Surface<'_>, master: Surface<'_>) -> Vec<GapWeights> {
     let facing = |s: Surface<'_>| -> Vec<Face> { s.faces.iter().map(|f| Face::new(f.map(|n| s.points[n]), *f)).collect() };
     let others = facing(master);
-    let grid = Grid::new(&others);
+    let grid = FaceGrid::new(&others);
     let mut area = vec![0.0; slave.points.len()];
     let mut covered = vec![true; slave.points.len()];
     let mut touched = vec![false; slave.points.len()];
@@ -175,7 +175,7 @@ pub fn weights_between(slave: Surface<'_>, master: Surface<'_>) -> Vec<Weights> 
     }
     let rows = (0..slave.points.len()).filter(|&n| touched[n] && covered[n] && area[n] > 0.0).map(|n| {
         let image = faced[n].iter().map(|&(m, w)| (m, w / area[n])).filter(|(_, w)| w.abs() > 1e-12).collect();
-        Weights { slave: n, own: vec![(n, 1.0)], image, area: area[n], at_seam: false }
+        GapWeights { slave: n, own: vec![(n, 1.0)], image, area: area[n], at_seam: false }
     });
     rows.collect()
 }
@@ -254,9 +254,9 @@ impl Face {
     }
 
     /// The bilinear map from [-1, 1]^2 by its coefficients of 1, xi, eta and xi eta.
-    fn map(&self) -> Map {
+    fn map(&self) -> FaceMap {
         let signs = [[1.0; 4], [-1.0, 1.0, 1.0, -1.0], [-1.0, -1.0, 1.0, 1.0], [1.0, -1.0, 1.0, -1.0]];
-        Map(signs.map(|by| [0, 1].map(|i| (0..4).map(|a| 0.25 * by[a] * self.corners[a][i]).sum())))
+        FaceMap(signs.map(|by| [0, 1].map(|i| (0..4).map(|a| 0.25 * by[a] * self.corners[a][i]).sum())))
     }
 
     /// How many times larger the bilinear map is at one place than at another.
@@ -290,9 +290,9 @@ impl Face {
 }
 
 /// See [`Face::map`].
-struct Map([Point; 4]);
+struct FaceMap([Point; 4]);
 
-impl Map {
+impl FaceMap {
     /// Shape functions at a point of the plane, from a guess of its coordinates on the face. Of
     /// Newton's steps each is off by the square of the one before.
     #[inline]
@@ -398,14 +398,14 @@ fn exactly(polygon: &[Point], smallest: f64, faces: [&Face; 2], mut f: impl FnMu
 }
 
 /// Faces by the cells of a regular grid that their bounds touch.
-pub(super) struct Grid {
+pub(super) struct FaceGrid {
     origin: Point,
     cell: f64,
     size: [usize; 2],
     faces: Vec<Vec<usize>>,
 }
 
-impl Grid {
+impl FaceGrid {
     pub fn new(faces: &[Face]) -> Self {
         let bounds: Vec<[Point; 2]> = faces.iter().map(Face::bounds).collect();
         let low = bounds.iter().fold([f64::INFINITY; 2], |m, b| [m[0].min(b[0][0]), m[1].min(b[0][1])]);

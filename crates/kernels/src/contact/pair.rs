@@ -13,7 +13,7 @@
 use super::frame::{ContactFrame, frame, from_frame, to_frame};
 use super::interface::{Interface, inward_normals};
 use super::inversion::inverted_image_weights;
-use super::mortar::{Weights, self_image_weights};
+use super::mortar::{GapWeights, self_image_weights};
 use crate::mesh::Mesh;
 
 /// Where the other of two equal bodies is: at R x, for every point x of the one that is meshed.
@@ -291,7 +291,7 @@ impl Interface for PairInterface {
 
 /// The weights of the mortar between a surface, whose contact nodes are at `positions`, and its
 /// image.
-fn weights(mesh: &Mesh, u: &[f64], image: Image, positions: &[[f64; 3]], faces: &[[usize; 4]]) -> Vec<Weights> {
+fn weights(mesh: &Mesh, u: &[f64], image: Image, positions: &[[f64; 3]], faces: &[[usize; 4]]) -> Vec<GapWeights> {
     // The slaves are on the side that trails: contact is lost there node by node, and its edge is
     // found best where nodes are slaves.
     let trailing = |shift: f64| if shift > STILL { -1.0 } else { 1.0 };
@@ -323,7 +323,7 @@ fn weights(mesh: &Mesh, u: &[f64], image: Image, positions: &[[f64; 3]], faces: 
 
 /// The coefficients of w = S x - R M x by node and component. Where y is not coupled it is the
 /// slave's own.
-fn combine(row: &Weights, signs: [f64; 3], free_y: bool) -> Vec<(usize, [f64; 3])> {
+fn combine(row: &GapWeights, signs: [f64; 3], free_y: bool) -> Vec<(usize, [f64; 3])> {
     let mut out: Vec<(usize, [f64; 3])> = Vec::new();
     let mut add = |j: usize, by: [f64; 3]| match out.iter_mut().find(|e| e.0 == j) {
         Some(e) => (0..3).for_each(|c| e.1[c] += by[c]),
@@ -344,7 +344,7 @@ fn combine(row: &Weights, signs: [f64; 3], free_y: bool) -> Vec<(usize, [f64; 3]
 }
 
 /// The slave that each of so many nodes is, or the one in whose image it has the most weight.
-fn facing(rows: &[Weights], nodes: usize) -> Vec<Option<usize>> {
+fn facing(rows: &[GapWeights], nodes: usize) -> Vec<Option<usize>> {
     let mut facing: Vec<Option<(usize, f64)>> = vec![None; nodes];
     for (k, row) in rows.iter().enumerate() {
         facing[row.slave] = Some((k, f64::INFINITY));
@@ -359,7 +359,7 @@ fn facing(rows: &[Weights], nodes: usize) -> Vec<Option<usize>> {
 
 /// The mean of the two surfaces' normals at a slave, of `up` at each node; without a part along y
 /// where y is not coupled.
-fn mean_normal(row: &Weights, up: &[[f64; 3]], signs: [f64; 3], free_y: bool) -> [f64; 3] {
+fn mean_normal(row: &GapWeights, up: &[[f64; 3]], signs: [f64; 3], free_y: bool) -> [f64; 3] {
     let mut normal = [0.0; 3];
     for &(j, w) in &row.own {
         (0..3).for_each(|c| normal[c] += w * up[j][c]);
@@ -374,12 +374,12 @@ fn mean_normal(row: &Weights, up: &[[f64; 3]], signs: [f64; 3], free_y: bool) ->
 }
 
 /// Per slave: the share of each master's load that is its own.
-fn shares(rows: &[Weights], slave_of: &[Option<usize>]) -> Vec<Vec<(usize, f64)>> {
+fn shares(rows: &[GapWeights], slave_of: &[Option<usize>]) -> Vec<Vec<(usize, f64)>> {
     let mut carried = vec![0.0; slave_of.len()];
     for row in rows {
         row.image.iter().for_each(|&(j, w)| carried[j] += row.area * w);
     }
-    let of = |row: &Weights| {
+    let of = |row: &GapWeights| {
         let to_masters = row.image.iter().filter(|e| slave_of[e.0].is_none() && carried[e.0] > 0.0);
         to_masters.map(|&(j, w)| (j, row.area * w / carried[j])).collect()
     };

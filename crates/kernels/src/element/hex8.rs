@@ -33,7 +33,7 @@ pub type Nodal<R> = [[R; 3]; NODES];
 
 /// What an element needs of its reference shape: computed once, in f64, then rounded.
 #[derive(Clone, Debug)]
-pub struct Geometry<R> {
+pub struct ElementGeometry<R> {
     /// Reference gradients dN_a/dX_j at the quadrature points, `[a][j]`.
     pub gradient: [[Lanes<R>; 3]; NODES],
     /// Reference volume of each quadrature point.
@@ -47,7 +47,7 @@ pub type Points<R> = [PointState<R>; QUADRATURE_POINTS];
 
 /// Committed state of an element's quadrature points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct State<R> {
+pub struct ElementState<R> {
     /// Elastic strain and hardening variable of each point.
     pub points: Points<R>,
     /// What flowed in the last step.
@@ -56,7 +56,7 @@ pub struct State<R> {
     pub plastic_work: R,
 }
 
-impl<R: Real> State<R> {
+impl<R: Real> ElementState<R> {
     /// The states from which the next step starts, with `weight` times the last flow anticipated
     /// (see `material::multistep`).
     pub fn start(&self, weight: R) -> Points<R> {
@@ -96,7 +96,7 @@ fn shape_derivatives(xi: [f64; 3]) -> [[f64; 3]; NODES] {
     })
 }
 
-impl<R: Real> Geometry<R> {
+impl<R: Real> ElementGeometry<R> {
     /// Gradients and volumes of the element with these nodes, or the quadrature point at which its
     /// shape is inverted.
     pub fn new(nodes: &[[f64; 3]; NODES]) -> Result<Self, Invalid> {
@@ -165,7 +165,7 @@ fn jacobian_minus_one<R: Real>(h: &Tensor<R>) -> Lanes<R> {
 
 /// Gradient of nodal values with respect to the reference position, `[i][j] = d u_i / d X_j`.
 #[inline(always)]
-fn displacement_gradient<R: Real>(geometry: &Geometry<R>, u: &Nodal<R>) -> Tensor<R> {
+fn displacement_gradient<R: Real>(geometry: &ElementGeometry<R>, u: &Nodal<R>) -> Tensor<R> {
     let mut h = [[Lanes::ZERO; 3]; 3];
     for a in 0..NODES {
         for i in 0..3 {
@@ -199,7 +199,7 @@ struct Kinematics<R> {
 }
 
 #[inline(always)]
-fn kinematics<R: Real>(geometry: &Geometry<R>, committed: &Nodal<R>, increment: &Nodal<R>) -> Kinematics<R> {
+fn kinematics<R: Real>(geometry: &ElementGeometry<R>, committed: &Nodal<R>, increment: &Nodal<R>) -> Kinematics<R> {
     let h_n = displacement_gradient(geometry, committed);
     let dh = displacement_gradient(geometry, increment);
     let (f_n_inverse, _) = invert(&identity_plus(&h_n));
@@ -264,7 +264,7 @@ fn divergence<R: Real>(gradient: &[[Lanes<R>; 3]; NODES], weighted: &[Lanes<R>; 
 /// `committed` is the displacement of the last committed state, `start` the states from which the
 /// step starts. Force unit: stress times area of the scaled problem.
 pub fn internal_force<R: Real>(
-    geometry: &Geometry<R>,
+    geometry: &ElementGeometry<R>,
     material: &Material<R>,
     start: &Points<R>,
     committed: &Nodal<R>,
@@ -300,7 +300,7 @@ pub const fn pair(a: usize, b: usize) -> usize {
 /// Returns about how far the displacement gradient may change before a point begins to yield: 0
 /// where one does, infinite in an elastic material.
 pub fn tangent<R: Real>(
-    geometry: &Geometry<R>,
+    geometry: &ElementGeometry<R>,
     material: &Material<R>,
     start: &Points<R>,
     committed: &Nodal<R>,
@@ -432,13 +432,13 @@ impl<R: Real> ByNode<R> {
 /// The state at the end of a step that went from `committed` by `increment`, and whose trial states
 /// were found from `start`; and the elastic energy of the element there.
 pub fn update<R: Real>(
-    geometry: &Geometry<R>,
+    geometry: &ElementGeometry<R>,
     material: &Material<R>,
-    state: &State<R>,
+    state: &ElementState<R>,
     start: &Points<R>,
     committed: &Nodal<R>,
     increment: &Nodal<R>,
-) -> Result<(State<R>, R), Invalid> {
+) -> Result<(ElementState<R>, R), Invalid> {
     let k = kinematics(geometry, committed, increment);
     k.check()?;
     let mut next = *state;
@@ -457,7 +457,7 @@ pub fn update<R: Real>(
 
 /// Elastic energy of an element with these states and this mean dilatation.
 #[inline(always)]
-fn elastic_energy<R: Real>(geometry: &Geometry<R>, material: &Material<R>, points: &Points<R>, theta_minus_1: R) -> R {
+fn elastic_energy<R: Real>(geometry: &ElementGeometry<R>, material: &Material<R>, points: &Points<R>, theta_minus_1: R) -> R {
     let mut energy = R::ZERO;
     for (point, &volume) in points.iter().zip(&geometry.volume.0) {
         energy += elastic_energy_deviatoric(&material.elasticity, &point.be) * volume;
@@ -467,7 +467,7 @@ fn elastic_energy<R: Real>(geometry: &Geometry<R>, material: &Material<R>, point
 
 /// What an element shows of itself at a committed state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Fields<R> {
+pub struct ElementFields<R> {
     /// Cauchy stress [xx, yy, zz, xy, yz, zx] at each quadrature point, scaled by E.
     pub stress: [[R; 6]; QUADRATURE_POINTS],
     /// Elastic energy of the element.
@@ -476,15 +476,15 @@ pub struct Fields<R> {
 
 /// Cauchy stress and elastic energy of a committed state at its displacement.
 pub fn fields<R: Real>(
-    geometry: &Geometry<R>,
+    geometry: &ElementGeometry<R>,
     material: &Material<R>,
     points: &Points<R>,
     committed: &Nodal<R>,
-) -> Result<Fields<R>, Invalid> {
+) -> Result<ElementFields<R>, Invalid> {
     let k = kinematics(geometry, committed, &[[R::ZERO; 3]; NODES]);
     k.check()?;
     let (p, _) = pressure(&material.elasticity, k.theta_minus_1);
-    let mut out = Fields::default();
+    let mut out = ElementFields::default();
     let third = R::ONE / R::of(3.0);
     for q in 0..QUADRATURE_POINTS {
         let be = &points[q].be;

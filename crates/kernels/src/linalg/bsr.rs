@@ -2,7 +2,6 @@
 //!
 //! Vectors are flat, three components a node: `[x_0, y_0, z_0, x_1, ...]`.
 
-use super::kernel;
 use super::parallel::each;
 use crate::real::Real;
 
@@ -114,20 +113,6 @@ impl<T: Real> BlockMatrix<T> {
             }
         }
         [lanes[0] + lanes[1] + lanes[2], lanes[3] + lanes[4] + lanes[5], lanes[6] + lanes[7] + lanes[8]]
-    }
-}
-
-impl BlockMatrix<f32> {
-    /// y = A x in f32, as fast as the preconditioner's products; `room` is for x with a fourth
-    /// number a node.
-    pub fn multiply_in_single(&self, x: &[f32], room: &mut Vec<[f32; 4]>, y: &mut [f32]) {
-        room.clear();
-        room.extend(x.as_chunks::<3>().0.iter().map(|x| [x[0], x[1], x[2], 0.0]));
-        let room = room.as_slice();
-        each(&mut y.as_chunks_mut::<3>().0[..self.rows()], |i, y| {
-            let sum = kernel::row_times(self, i, room).to_array();
-            *y = [sum[0], sum[1], sum[2]];
-        });
     }
 }
 

@@ -16,10 +16,10 @@ use faer::linalg::triangular_solve::{
 use faer::{Accum, Mat, MatMut, Par};
 
 use super::bsr::{BlockMatrix, Pattern, Widen};
-use super::dissection::{Dissection, Part};
+use super::dissection::{Dissection, Separator};
 use super::fixed::Fixed;
+use super::outcome::{LinalgError, SolveReport};
 use super::vector::norm;
-use super::{LinalgError, SolveReport};
 use crate::real::Real;
 
 /// Memory the factors may take by default, in bytes.
@@ -228,7 +228,7 @@ impl<T: Real> Job<'_, T> {
     }
 
     /// Adds the matrix's entries in the rows and columns of a part's own nodes.
-    fn assemble(&self, part: &Part, f: &mut Mat<f64>) {
+    fn assemble(&self, part: &Separator, f: &mut Mat<f64>) {
         let Dissection { order, rank, .. } = self.dissection;
         for (k, &node) in order[part.own.clone()].iter().enumerate() {
             let i = node as usize;
@@ -256,7 +256,7 @@ impl<T: Real> Job<'_, T> {
 }
 
 /// Place of a node in a part's front, by its elimination number.
-fn local(part: &Part, rank: u32) -> Option<usize> {
+fn local(part: &Separator, rank: u32) -> Option<usize> {
     if part.own.contains(&(rank as usize)) {
         Some(rank as usize - part.own.start)
     } else {
@@ -265,7 +265,7 @@ fn local(part: &Part, rank: u32) -> Option<usize> {
 }
 
 /// Adds to a part's front what a child, whose boundary is `ranks`, left over.
-fn extend_add(part: &Part, ranks: &[u32], rest: &Mat<f64>, f: &mut Mat<f64>) {
+fn extend_add(part: &Separator, ranks: &[u32], rest: &Mat<f64>, f: &mut Mat<f64>) {
     // Every place is found: a child's boundary lies in its parent's front.
     let places: Vec<usize> = ranks.iter().filter_map(|&rank| local(part, rank)).collect();
     for (l, &to_l) in places.iter().enumerate() {

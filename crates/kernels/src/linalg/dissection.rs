@@ -10,7 +10,7 @@ const LEAF: usize = 48;
 
 /// A separator or a leaf of the dissection. Nodes are numbered by elimination.
 #[derive(Clone, Debug)]
-pub(super) struct Part {
+pub(super) struct Separator {
     /// Its nodes.
     pub own: Range<usize>,
     /// Later nodes coupled with its subtree, increasing.
@@ -28,7 +28,7 @@ pub(super) struct Dissection {
     pub order: Vec<u32>,
     /// Place of each node.
     pub rank: Vec<u32>,
-    pub parts: Vec<Part>,
+    pub parts: Vec<Separator>,
 }
 
 /// Distance of nodes that a search has not reached.
@@ -41,7 +41,7 @@ struct Cutter {
     sets: u32,
     distance: [Vec<u32>; 2],
     order: Vec<u32>,
-    parts: Vec<Part>,
+    parts: Vec<Separator>,
 }
 
 impl Dissection {
@@ -100,7 +100,7 @@ impl Cutter {
         }
         let start = self.order.len();
         self.order.append(&mut own);
-        self.parts.push(Part { own: start..self.order.len(), boundary: Vec::new(), children, first });
+        self.parts.push(Separator { own: start..self.order.len(), boundary: Vec::new(), children, first });
         self.parts.len() - 1
     }
 

@@ -24,7 +24,7 @@ pub struct Lists {
 
 /// A scalar sparse matrix by rows.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Rows {
+pub struct SparseRows {
     /// Starts of the rows.
     pub start: Vec<u32>,
     /// Columns.
@@ -59,14 +59,14 @@ pub struct TransferLayout {
     /// Blocks of the next level's matrix: which blocks of A P they sum.
     pub coarse: Lists,
     /// P, by fine nodes.
-    pub prolongation: Rows,
+    pub prolongation: SparseRows,
     /// P^T, by coarse nodes.
-    pub restriction: Rows,
+    pub restriction: SparseRows,
 }
 
 /// The layout of a whole hierarchy, finest first.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Layout {
+pub struct HierarchyLayout {
     /// The levels.
     pub levels: Vec<LevelLayout>,
     /// Shares of the last step and of D^-1 r in each step of the smoother.
@@ -75,7 +75,7 @@ pub struct Layout {
     pub coarsest: Vec<[f32; 2]>,
 }
 
-impl Layout {
+impl HierarchyLayout {
     /// The layout of the hierarchy that [`super::Hierarchy::new`] makes of the same arguments.
     ///
     /// # Errors
@@ -167,6 +167,6 @@ fn width(pattern: &Pattern) -> usize {
     (0..pattern.rows()).map(|i| pattern.row(i).len()).max().unwrap_or(0).next_multiple_of(2)
 }
 
-fn rows(weights: &Weights) -> Rows {
-    Rows { start: weights.start.clone(), column: weights.column.clone(), weight: weights.weight.clone() }
+fn rows(weights: &Weights) -> SparseRows {
+    SparseRows { start: weights.start.clone(), column: weights.column.clone(), weight: weights.weight.clone() }
 }

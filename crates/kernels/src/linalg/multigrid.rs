@@ -8,9 +8,9 @@ use super::chebyshev::{LOW, Smoother};
 use super::fixed::Fixed;
 use super::galerkin::{Transfer, mask};
 use super::kernel::{Node, row_times};
+use super::outcome::{LinalgError, size};
 use super::parallel::{each, each_row};
 use super::ties::Ties;
-use super::{LinalgError, size};
 use crate::lanes::array;
 use crate::mesh::Prolongation;
 use crate::real::Real;
@@ -38,7 +38,7 @@ struct GridLevel {
 
 /// What a level holds. Vectors have three components a node and a fourth number that is 0.
 #[derive(Clone, Copy, Debug)]
-pub struct OnLevel<'a> {
+pub struct LevelView<'a> {
     /// Its matrix; on the finest level with the rows and columns of fixed unknowns replaced by
     /// those of the identity.
     pub matrix: &'a BlockMatrix<f32>,
@@ -172,10 +172,10 @@ impl Hierarchy {
 
     /// What an update and a V-cycle left on a level, the finest being 0: for comparisons with a
     /// device. None beyond the coarsest.
-    pub fn on_level(&self, l: usize) -> Option<OnLevel<'_>> {
+    pub fn on_level(&self, l: usize) -> Option<LevelView<'_>> {
         let level = self.levels.get(l)?;
         let (matrix, inverse) = (&level.smoother.matrix, level.smoother.inverse());
-        Some(OnLevel { matrix, inverse, b: &level.b, x: &level.x })
+        Some(LevelView { matrix, inverse, b: &level.b, x: &level.x })
     }
 
     /// Gives a level's matrix other numbers after an update; its smoother follows, coarser levels

@@ -1,6 +1,5 @@
-//! The one error of this room. What a single point says in the inner loops is a [`PointError`].
-
-use super::PointError;
+//! The errors of this room: that of a law or of a path, and the [`PointError`] that a single point
+//! says in the inner loops.
 
 /// A hardening law that cannot be built, or a path that a point cannot follow.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -51,4 +50,39 @@ pub enum MaterialError {
         /// Lateral Kirchhoff stress over E.
         residual: f64,
     },
+}
+
+/// Why a point has no answer for the deformation it was given. A reason to cut the step back, not
+/// to stop the program.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum PointError {
+    /// The relative deformation turns the material inside out.
+    #[error("the relative deformation has the determinant {jacobian}, not above 0: take a smaller step")]
+    Inverted {
+        /// det f, dimensionless.
+        jacobian: f64,
+    },
+    /// The deformation or the state holds a NaN, or is so large that the stress overflows.
+    #[error("the deformation or the state is not finite: take a smaller step")]
+    NotFinite,
+}
+
+/// [`PointError`] without its number: what an element passes on of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Refusal {
+    /// See [`PointError::Inverted`].
+    #[error("the relative deformation of the step turns it inside out")]
+    Inverted,
+    /// See [`PointError::NotFinite`].
+    #[error("its stress or plastic strain is not finite")]
+    NotFinite,
+}
+
+impl From<PointError> for Refusal {
+    fn from(error: PointError) -> Self {
+        match error {
+            PointError::Inverted { .. } => Self::Inverted,
+            PointError::NotFinite => Self::NotFinite,
+        }
+    }
 }

@@ -20,7 +20,7 @@
 // written for.
 #![allow(clippy::needless_range_loop, clippy::neg_cmp_op_on_partial_ord)]
 
-use super::{Material, PointError, PointState};
+use super::{Elasticity, Material, PointError, PointState};
 use crate::lanes::{Lanes, Number, array};
 use crate::real::Real;
 
@@ -148,6 +148,18 @@ fn square<R: Number>(a: &[R; 6]) -> [R; 6] {
 pub(super) fn determinant<R: Number>(a: &[R; 6]) -> R {
     let [xx, yy, zz, xy, yz, zx] = *a;
     xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * zx) + zx * (xy * yz - yy * zx)
+}
+
+/// W = mu/2 (tr b_e_bar - 3) from b_e_bar - I, energy per reference volume, >= 0 (Simo & Hughes
+/// 1998, eq. 9.2.6).
+///
+/// The trace is of second order in the strain while the entries of `be` are of first order, so
+/// summing the diagonal would lose the digits. It is taken from the deviator instead, as the root
+/// of det(dev + t I) = 1.
+#[inline]
+pub fn elastic_energy_deviatoric<R: Real>(elasticity: &Elasticity<R>, be: &[R; 6]) -> R {
+    let (deviator, mean) = deviator(be);
+    R::of(1.5) * elasticity.shear * isochoric_mean(&deviator, mean)
 }
 
 /// u = t - 1 where t is the largest root of det(D + t I) = 1 for a deviator D: a third of tr

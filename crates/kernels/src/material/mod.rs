@@ -25,50 +25,15 @@ mod laws;
 pub mod multistep;
 pub mod point;
 
-pub use error::MaterialError;
+pub use error::{MaterialError, PointError, Refusal};
 pub use hardening::FlowStress;
-pub use j2::{Response, deviatoric_tangent, return_mapping, return_mapping_of_eight};
+pub use j2::{Response, deviatoric_tangent, elastic_energy_deviatoric, return_mapping, return_mapping_of_eight};
 pub use laws::{HardeningLaw, HardeningParameter, hollomon_yield_stress};
 
 use serde::{Deserialize, Serialize};
 
 use crate::lanes::{Lanes, array};
 use crate::real::Real;
-
-/// Why a point has no answer for the deformation it was given. A reason to cut the step back, not
-/// to stop the program.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum PointError {
-    /// The relative deformation turns the material inside out.
-    #[error("the relative deformation has the determinant {jacobian}, not above 0: take a smaller step")]
-    Inverted {
-        /// det f, dimensionless.
-        jacobian: f64,
-    },
-    /// The deformation or the state holds a NaN, or is so large that the stress overflows.
-    #[error("the deformation or the state is not finite: take a smaller step")]
-    NotFinite,
-}
-
-/// [`PointError`] without its number: what an element passes on of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Refusal {
-    /// See [`PointError::Inverted`].
-    #[error("the relative deformation of the step turns it inside out")]
-    Inverted,
-    /// See [`PointError::NotFinite`].
-    #[error("its stress or plastic strain is not finite")]
-    NotFinite,
-}
-
-impl From<PointError> for Refusal {
-    fn from(error: PointError) -> Self {
-        match error {
-            PointError::Inverted { .. } => Self::Inverted,
-            PointError::NotFinite => Self::NotFinite,
-        }
-    }
-}
 
 /// The two elastic constants of an isotropic solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -163,18 +128,6 @@ pub fn elastic_energy_volumetric<R: Real>(elasticity: &Elasticity<R>, j_minus_1:
         j + half * j * j - (R::ONE + j).ln()
     };
     half * elasticity.bulk * bracket
-}
-
-/// W = mu/2 (tr b_e_bar - 3) from b_e_bar - I, energy per reference volume, >= 0 (Simo & Hughes
-/// 1998, eq. 9.2.6).
-///
-/// The trace is of second order in the strain while the entries of `be` are of first order, so
-/// summing the diagonal would lose the digits. It is taken from the deviator instead, as the root
-/// of det(dev + t I) = 1.
-#[inline]
-pub fn elastic_energy_deviatoric<R: Real>(elasticity: &Elasticity<R>, be: &[R; 6]) -> R {
-    let (deviator, mean) = j2::deviator(be);
-    R::of(1.5) * elasticity.shear * j2::isochoric_mean(&deviator, mean)
 }
 
 #[cfg(test)]

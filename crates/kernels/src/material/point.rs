@@ -146,7 +146,7 @@ impl MaterialPoint {
 
 /// What one step of a path asks of the point.
 #[derive(Clone, Copy, Debug)]
-enum Target {
+enum StepTarget {
     /// The logarithmic strain along x, with free sides.
     Stretch(f64),
     /// F - I.
@@ -157,7 +157,7 @@ enum Target {
 /// has no answer.
 fn drive(
     material: &Material<f64>,
-    targets: impl IntoIterator<Item = Target>,
+    targets: impl IntoIterator<Item = StepTarget>,
 ) -> impl Iterator<Item = Result<PointRecord, MaterialError>> {
     let mut point = MaterialPoint::new(material.clone());
     let mut failed = false;
@@ -167,8 +167,8 @@ fn drive(
             return None;
         }
         let record = match target {
-            Target::Stretch(axial) => point.stretch(axial),
-            Target::Deform(gradient) => point.advance(&gradient),
+            StepTarget::Stretch(axial) => point.stretch(axial),
+            StepTarget::Deform(gradient) => point.advance(&gradient),
         };
         failed = record.is_err();
         Some(record)
@@ -180,7 +180,7 @@ fn drive(
 /// equal steps; the sides are free. The first record is the undeformed point; after the error of a
 /// step the iterator ends.
 pub fn uniaxial(material: &Material<f64>, strain: f64, steps: usize) -> impl Iterator<Item = Result<PointRecord, MaterialError>> {
-    drive(material, (1..=steps).map(move |step| Target::Stretch(strain * (step as f64 / steps as f64))))
+    drive(material, (1..=steps).map(move |step| StepTarget::Stretch(strain * (step as f64 / steps as f64))))
 }
 
 /// Simple shear F = I + gamma e_x (x) e_y to gamma = `strain` in `steps` equal steps. The first
@@ -193,7 +193,7 @@ pub fn simple_shear(
     let targets = (1..=steps).map(move |step| {
         let mut gradient = Gradient::default();
         gradient[0][1] = strain * (step as f64 / steps as f64);
-        Target::Deform(gradient)
+        StepTarget::Deform(gradient)
     });
     drive(material, targets)
 }
@@ -206,7 +206,7 @@ pub fn along(
 ) -> impl Iterator<Item = Result<PointRecord, MaterialError>> {
     let targets = path.into_iter().map(|gradient| {
         let identity = |i: usize, k: usize| if i == k { 1.0 } else { 0.0 };
-        Target::Deform(std::array::from_fn(|i| std::array::from_fn(|k| gradient[i][k] - identity(i, k))))
+        StepTarget::Deform(std::array::from_fn(|i| std::array::from_fn(|k| gradient[i][k] - identity(i, k))))
     });
     drive(material, targets)
 }

@@ -1,10 +1,26 @@
 //! Lists and areas derived from the elements.
 
-use super::NodeElements;
-
 /// Local nodes of the six faces of a VTK_HEXAHEDRON, counter-clockwise seen from outside:
 /// xi = -1, xi = 1, eta = -1, eta = 1, zeta = -1, zeta = 1.
 pub const FACES: [[usize; 4]; 6] = [[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]];
+
+/// For every node the elements around it, in increasing element order: the lists by which forces
+/// and tangents are gathered.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NodeElements {
+    /// Starts of the nodes' lists, one more than there are nodes.
+    pub start: Vec<u32>,
+    /// Entries `8 * element + local node`.
+    pub entry: Vec<u32>,
+}
+
+impl NodeElements {
+    /// Where the list of a node is among the entries.
+    #[inline(always)]
+    pub fn list(&self, node: usize) -> std::ops::Range<usize> {
+        self.start[node] as usize..self.start[node + 1] as usize
+    }
+}
 
 /// The elements around each of `node_count` nodes, in increasing order.
 pub fn node_elements(node_count: usize, elements: &[[u32; 8]]) -> NodeElements {

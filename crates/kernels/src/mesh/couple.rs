@@ -5,31 +5,7 @@
 //! mirror image of that, z to -z. No element touches both bodies, so what is formed from the
 //! elements (forces, tangents, patterns) falls into a part for each.
 
-use super::{Half, Mesh, NodeElements, Prolongation};
-
-/// Where the opponent begins in the lists of a mesh of two bodies, and the interpolations of each.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Couple {
-    /// Its first node.
-    pub node: usize,
-    /// Its first element.
-    pub element: usize,
-    /// Its first contact node, as an index among the contact nodes.
-    pub contact: usize,
-    /// Its first contact face.
-    pub contact_face: usize,
-    /// Interpolations of the sphere and of the opponent, finest first.
-    pub hierarchies: [Vec<Prolongation>; 2],
-    /// The half of each at x >= 0, in numbers of its own nodes.
-    pub halves: [Option<Half>; 2],
-}
-
-impl Couple {
-    /// Body of a node: 0 the sphere, 1 the opponent.
-    pub fn body_of(&self, node: usize) -> usize {
-        usize::from(node >= self.node)
-    }
-}
+use super::{Couple, Mesh, NodeElements};
 
 /// A mesh with all lengths times `by`.
 pub fn scaled(mut mesh: Mesh, by: f64) -> Mesh {

@@ -5,10 +5,22 @@
 //! second index and the last") keeps the blocks conforming. Levels need no exact nesting:
 //! interpolation is trilinear in index space and injects at the coarse nodes.
 
-use super::Prolongation;
-
 /// No level is made below this number of nodes: the smoother alone solves it.
 pub const COARSEST_NODES: usize = 300;
+
+/// Sparse interpolation from a coarse level's nodes to a fine level's nodes, in rows of (coarse
+/// node, weight); the weights of a row sum to 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prolongation {
+    /// Number of coarse nodes (columns).
+    pub coarse_nodes: usize,
+    /// Row starts, one more than there are fine nodes.
+    pub row_start: Vec<u32>,
+    /// Coarse node of each entry, increasing within a row.
+    pub column: Vec<u32>,
+    /// Weight of each entry.
+    pub weight: Vec<f64>,
+}
 
 /// A node by its block and its logical indices; nodes on a block's boundary have a name in each
 /// block that shares them.

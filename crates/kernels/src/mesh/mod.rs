@@ -12,16 +12,23 @@
 
 pub mod brick;
 pub mod connectivity;
+mod corners;
 pub mod couple;
 pub mod hanging;
 pub mod hierarchy;
+mod parts;
+pub mod pattern;
 pub mod quality;
 pub mod sphere;
 pub mod whole;
 
 pub use brick::brick;
-pub use couple::{Couple, couple};
-pub use hanging::{Corners, Hanging};
+pub use connectivity::NodeElements;
+pub use corners::Corners;
+pub use couple::couple;
+pub use hanging::Hanging;
+pub use hierarchy::Prolongation;
+pub use parts::{Couple, MirrorHalf};
 pub use sphere::{
     FINE_ZONES, FINEST_SURFACE, FIRST_LAYERS, LARGEST_CONTACT, LARGEST_FINE_RADIUS, SphereSpec, element_count, flat_mesh,
     opponent_mesh, sphere_mesh,
@@ -59,50 +66,6 @@ pub enum MeshError {
     },
 }
 
-pub mod pattern;
-
-/// Sparse interpolation from a coarse level's nodes to a fine level's nodes, in rows of (coarse
-/// node, weight); the weights of a row sum to 1.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Prolongation {
-    /// Number of coarse nodes (columns).
-    pub coarse_nodes: usize,
-    /// Row starts, one more than there are fine nodes.
-    pub row_start: Vec<u32>,
-    /// Coarse node of each entry, increasing within a row.
-    pub column: Vec<u32>,
-    /// Weight of each entry.
-    pub weight: Vec<f64>,
-}
-
-/// For every node the elements around it, in increasing element order: the lists by which forces
-/// and tangents are gathered.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NodeElements {
-    /// Starts of the nodes' lists, one more than there are nodes.
-    pub start: Vec<u32>,
-    /// Entries `8 * element + local node`.
-    pub entry: Vec<u32>,
-}
-
-impl NodeElements {
-    /// Where the list of a node is among the entries.
-    #[inline(always)]
-    pub fn list(&self, node: usize) -> std::ops::Range<usize> {
-        self.start[node] as usize..self.start[node + 1] as usize
-    }
-}
-
-/// The half at x >= 0 of a mesh that is its own mirror image in x: all of a body that moves evenly,
-/// or oddly, in x.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Half {
-    /// Node of the whole mesh, for each node of the half.
-    pub node: Vec<u32>,
-    /// Interpolations of the half, finest first. Nodes at x = 0 take from nodes at x = 0 alone.
-    pub hierarchy: Vec<Prolongation>,
-}
-
 /// A hex8 mesh with what the solver needs to know of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
@@ -136,7 +99,7 @@ pub struct Mesh {
     /// Interpolations, finest first; empty if the mesh has no hierarchy.
     pub hierarchy: Vec<Prolongation>,
     /// The half at x >= 0, if no element crosses x = 0.
-    pub half: Option<Half>,
+    pub half: Option<MirrorHalf>,
     /// Contact radius up to which the surface is finely meshed.
     pub fine_radius: f64,
     /// Where the opponent begins, if the mesh is of two bodies.

@@ -5,17 +5,17 @@
 //! is the whole of the half's.
 
 use super::connectivity::{node_elements, sweep_order};
-use super::{Half, Hanging, Mesh, Prolongation};
+use super::{Hanging, Mesh, MirrorHalf, Prolongation};
 
 /// Numbers of the image of each node of a half.
-struct Image {
+struct MirrorNumbers {
     /// The node itself where it lies at y = 0.
     of: Vec<u32>,
     /// Nodes of both halves.
     count: usize,
 }
 
-impl Image {
+impl MirrorNumbers {
     fn new(is_shared: &[bool]) -> Self {
         let mut count = is_shared.len();
         let of = is_shared.iter().enumerate().map(|(node, &shared)| {
@@ -47,7 +47,7 @@ const MIRRORED: [usize; 8] = [4, 5, 6, 7, 0, 1, 2, 3];
 /// The whole body, of the mesh of its half at y >= 0.
 pub fn whole(half: &Mesh) -> Mesh {
     let is_shared: Vec<bool> = half.nodes.iter().map(|x| x[1] == 0.0).collect();
-    let image = Image::new(&is_shared);
+    let image = MirrorNumbers::new(&is_shared);
     let mirrored = |x: &[f64; 3]| [x[0], -x[1], x[2]];
     let doubled = image.doubled().map(|n| mirrored(&half.nodes[n as usize]));
     let nodes: Vec<[f64; 3]> = half.nodes.iter().copied().chain(doubled).collect();
@@ -87,9 +87,9 @@ pub fn whole(half: &Mesh) -> Mesh {
 }
 
 /// What of both halves is at x >= 0, from that of one.
-fn of_both(right: &Half, nodes: &[[f64; 3]], image: &Image) -> Half {
+fn of_both(right: &MirrorHalf, nodes: &[[f64; 3]], image: &MirrorNumbers) -> MirrorHalf {
     let is_shared = right.node.iter().map(|&n| nodes[n as usize][1] == 0.0).collect();
-    Half { node: image.with_images(&right.node), hierarchy: levels(&right.hierarchy, is_shared) }
+    MirrorHalf { node: image.with_images(&right.node), hierarchy: levels(&right.hierarchy, is_shared) }
 }
 
 /// The levels of both halves, from those of one and from what of its finest nodes lies at y = 0.
@@ -104,7 +104,7 @@ fn levels(half: &[Prolongation], mut is_shared: Vec<bool>) -> Vec<Prolongation> 
                     coarse_shared[only as usize] = true;
                 }
             }
-            let (fine, coarse) = (Image::new(&is_shared), Image::new(&coarse_shared));
+            let (fine, coarse) = (MirrorNumbers::new(&is_shared), MirrorNumbers::new(&coarse_shared));
             let mut joined =
                 Prolongation { coarse_nodes: coarse.count, row_start: vec![0], column: Vec::new(), weight: Vec::new() };
             for row in 0..is_shared.len() {

@@ -6,7 +6,7 @@ use super::super::error::GpuError;
 use super::super::layout::{AT_POINT, CONDITIONS, MOST_SLOTS};
 use super::super::linear::records::Record;
 use super::super::linear::sizes::THREADS;
-use super::super::resident::{Resident, Sizes};
+use super::super::resident::{BatchSizes, Resident};
 use crate::compute::CaseModel;
 use crate::compute::iterate::{missing_weight, prescribed};
 use crate::mesh::Mesh;
@@ -50,7 +50,7 @@ impl<R: DeviceReal> Kept<R> {
     ///
     /// # Errors
     /// As [`GpuContext::zeros`].
-    pub fn new(context: &GpuContext, sizes: Sizes, resident: &Resident<R>, models: &[CaseModel]) -> Result<Self, GpuError> {
+    pub fn new(context: &GpuContext, sizes: BatchSizes, resident: &Resident<R>, models: &[CaseModel]) -> Result<Self, GpuError> {
         let (cases, n, points) = (models.len(), 3 * sizes.nodes, sizes.contact_points);
         let geometries = resident.geometry_of.iter().max().map_or(1, |last| *last as usize + 1);
         let of = |geometry: usize| resident.geometry_of.iter().position(|&g| g as usize == geometry).unwrap_or(0);
@@ -77,7 +77,7 @@ impl<R: DeviceReal> Kept<R> {
     pub fn replace(
         &self,
         context: &GpuContext,
-        sizes: Sizes,
+        sizes: BatchSizes,
         index: usize,
         (geometry, mesh): (usize, &Mesh),
     ) -> Result<(), GpuError> {
@@ -99,7 +99,7 @@ impl<R: DeviceReal> Kept<R> {
     }
 
     /// Bytes of a case.
-    pub fn bytes(sizes: Sizes) -> u64 {
+    pub fn bytes(sizes: BatchSizes) -> u64 {
         let (n, points) = (3 * sizes.nodes, sizes.contact_points);
         (size_of::<R>() * (7 * n + 2 * CONDITIONS * points) + size_of::<u32>() * (n + points)) as u64
     }
@@ -151,7 +151,7 @@ impl<R: DeviceReal> Told<R> {
     ///
     /// # Errors
     /// As [`GpuContext::zeros`].
-    pub fn new(context: &GpuContext, sizes: Sizes, slots: usize) -> Result<Self, GpuError> {
+    pub fn new(context: &GpuContext, sizes: BatchSizes, slots: usize) -> Result<Self, GpuError> {
         let zeros = |what: &str, numbers: usize| context.zeros(what, slots * numbers);
         Ok(Self {
             marks: context.blocks("marks", MOST_SLOTS)?,
@@ -170,7 +170,7 @@ impl<R: DeviceReal> Told<R> {
     }
 
     /// Bytes of a slot.
-    pub fn bytes(sizes: Sizes) -> u64 {
+    pub fn bytes(sizes: BatchSizes) -> u64 {
         let numbers = NUMBERS + READINGS + 3 + AT_POINT * sizes.contact_points + PARTS * sizes.nodes.div_ceil(THREADS);
         let words = 6 + sizes.contact_points;
         (size_of::<R>() * numbers + size_of::<u32>() * words + 2 * size_of::<Record>()) as u64

@@ -5,7 +5,7 @@ use super::super::buffers::{DeviceReal, Partly};
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
 use super::super::kernel::Kernel;
-use super::super::linear::solver::{Linear, OfIterates};
+use super::super::linear::solver::{OfIterates, SlotSolver};
 use super::super::pipelines::Bound;
 use super::super::resident::{Connectivity, Resident};
 use super::super::scratch::Scratch;
@@ -14,7 +14,7 @@ use super::sources;
 
 /// The kernels bound to a group of cases.
 #[derive(Debug)]
-pub struct Kernels {
+pub struct IterateKernels {
     pub(super) place: Bound,
     pub(super) current: Bound,
     pub(super) save: Bound,
@@ -33,7 +33,7 @@ pub struct Kernels {
 }
 
 /// What they are bound to.
-struct Arrays<'a, R> {
+struct BoundTo<'a, R> {
     context: &'a GpuContext,
     mesh: &'a Connectivity,
     resident: &'a Resident<R>,
@@ -43,7 +43,7 @@ struct Arrays<'a, R> {
     told: &'a Told<R>,
 }
 
-impl<R: DeviceReal> Arrays<'_, R> {
+impl<R: DeviceReal> BoundTo<'_, R> {
     fn bind(&self, kernel: &'static Kernel, parts: &[&[Argument<'_>]]) -> Result<Bound, GpuError> {
         let Self { scratch, told, .. } = self;
         let shape = args! {
@@ -80,11 +80,11 @@ impl<R: DeviceReal> Arrays<'_, R> {
         }
     }
 
-    fn kernels(&self) -> Result<Kernels, GpuError> {
+    fn kernels(&self) -> Result<IterateKernels, GpuError> {
         let [place, save, contact, measure, read] = self.of_trials()?;
         let [current, system, expand, unit, respond, depth, press] = self.of_systems()?;
         let [land, commit, energies] = self.of_steps()?;
-        Ok(Kernels {
+        Ok(IterateKernels {
             place,
             current,
             save,
@@ -192,7 +192,7 @@ impl<R: DeviceReal> Arrays<'_, R> {
 #[derive(Debug)]
 pub struct Iterates<R> {
     /// Arrays and kernels of each group.
-    pub groups: Vec<(Kept<R>, Kernels)>,
+    pub groups: Vec<(Kept<R>, IterateKernels)>,
     /// What all dispatches are told and leave.
     pub told: Told<R>,
 }
@@ -206,7 +206,7 @@ impl<R: DeviceReal> Iterates<R> {
         context: &GpuContext,
         mesh: &Connectivity,
         scratch: &Scratch<R>,
-        linear: &Linear,
+        linear: &SlotSolver,
         (slots, kept): (usize, Vec<Kept<R>>),
         residents: impl Iterator<Item = &'a Resident<R>>,
     ) -> Result<Self, GpuError>
@@ -215,7 +215,7 @@ impl<R: DeviceReal> Iterates<R> {
     {
         let told = Told::new(context, mesh.sizes, slots)?;
         let bound = |(kept, resident): (Kept<R>, &Resident<R>)| {
-            let arrays = Arrays { context, mesh, resident, scratch, solver: linear.of_iterates(), kept: &kept, told: &told };
+            let arrays = BoundTo { context, mesh, resident, scratch, solver: linear.of_iterates(), kept: &kept, told: &told };
             let kernels = arrays.kernels()?;
             Ok((kept, kernels))
         };

@@ -2,11 +2,11 @@
 
 use super::arrays::{NUMBERS, READINGS};
 use crate::compute::linear::SideReport;
-use crate::compute::{Energies, Outcome};
+use crate::compute::{Energies, Evaluated};
 
 /// What is done to a slot, as `told.wgsl` has it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Mark {
+pub struct SlotMark {
     /// The current iterate of the case, 0 or 1.
     pub current: u32,
     /// The one that is made.
@@ -71,7 +71,7 @@ pub mod number {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Readout {
     /// How the evaluation went.
-    pub outcome: Outcome,
+    pub outcome: Evaluated,
     /// Merit, force scale, plate force, tangential residual, normal force, slope, slope at the
     /// current iterate, square of what is released, change of h, largest right-hand side.
     pub numbers: [f64; READINGS],
@@ -81,9 +81,9 @@ pub struct Readout {
 
 /// What a commit leaves in a slot.
 #[derive(Clone, Debug)]
-pub struct Committed {
+pub struct CommitReport {
     /// How it went.
-    pub outcome: Outcome,
+    pub outcome: Evaluated,
     /// Energies of the body.
     pub energies: Energies,
     /// `[AT_POINT][point]`.
@@ -96,7 +96,7 @@ pub struct Committed {
 #[derive(Clone, Debug)]
 pub struct Corrections {
     /// How the tangents went.
-    pub tangents: Vec<Outcome>,
+    pub tangents: Vec<Evaluated>,
     /// How the solutions went.
     pub reports: Vec<SideReport>,
     /// The same of the responses to a unit indentation; none where no force is held.

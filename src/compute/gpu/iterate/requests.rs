@@ -5,17 +5,17 @@ use super::super::buffers::DeviceReal;
 use super::super::dispatch::{Dispatch, status_of};
 use super::super::linear::records::Solves;
 use super::arrays::{CAME_OFF, SLIDES};
-use super::marks::{Brought, Corrections, Mark, Readout, flags, number, source};
+use super::marks::{Brought, Corrections, Readout, SlotMark, flags, number, source};
 use crate::compute::call::not_asked;
 use crate::compute::iterate::{
     Ask, Begin, Correct, Corrected, From, Plate, Reading, Reply, Request, Settled, SettledPoint, Vectors,
 };
 use crate::compute::linear::SideReport;
-use crate::compute::{Answer, Call, ComputeError, Outcome};
+use crate::compute::{Answer, Call, ComputeError, Evaluated};
 use crate::contact::coulomb::Friction;
 
 /// What is asked of the iterates of a case, and the reply.
-struct Asked {
+struct SlotRequest {
     case: usize,
     kept: bool,
     plate: Plate,
@@ -27,7 +27,7 @@ impl<R: DeviceReal> Gpu<R> {
     /// What [`Call::Iterate`] asks for.
     pub(in super::super) fn iterate(&mut self, calls: Vec<(usize, Call)>) -> Result<Vec<Answer>, ComputeError> {
         let asked = |(case, call)| match call {
-            Call::Iterate(Request { kept, plate, ask }) => Ok(Asked { case, kept, plate, ask, answer: Reply::Nothing }),
+            Call::Iterate(Request { kept, plate, ask }) => Ok(SlotRequest { case, kept, plate, ask, answer: Reply::Nothing }),
             _ => Err(not_asked()),
         };
         let mut requests = calls.into_iter().map(asked).collect::<Result<Vec<_>, _>>()?;
@@ -35,7 +35,7 @@ impl<R: DeviceReal> Gpu<R> {
         Ok(requests.into_iter().map(|request| Answer::Iterate(request.answer)).collect())
     }
 
-    fn answer_asked(&mut self, requests: &mut [Asked]) -> Result<(), ComputeError> {
+    fn answer_asked(&mut self, requests: &mut [SlotRequest]) -> Result<(), ComputeError> {
         let Some(kind) = requests.first().map(|request| std::mem::discriminant(&request.ask)) else { return Ok(()) };
         if requests.iter().any(|request| std::mem::discriminant(&request.ask) != kind) {
             return Err(ComputeError::Device("calls that go together ask for different things".to_owned()));
@@ -56,10 +56,10 @@ impl<R: DeviceReal> Gpu<R> {
     }
 
     /// What all marks of a case have: from the current iterate to the other one.
-    fn mark(&self, request: &Asked) -> Mark {
+    fn mark(&self, request: &SlotRequest) -> SlotMark {
         let current = self.current[request.case];
         let stick = self.models[request.case].friction == Friction::Stick;
-        let mut mark = Mark { current, trial: 1 - current, ..Mark::default() };
+        let mut mark = SlotMark { current, trial: 1 - current, ..SlotMark::default() };
         if request.kept && stick {
             mark.flags |= flags::LANDS;
         }
@@ -75,34 +75,34 @@ impl<R: DeviceReal> Gpu<R> {
     /// Calls `serve` for the dispatches of some of the requests, given by their indices.
     fn dispatch(
         &mut self,
-        requests: &mut [Asked],
+        requests: &mut [SlotRequest],
         some: &[usize],
-        mut serve: impl FnMut(&mut Self, &Dispatch, &mut [&mut Asked]) -> Result<(), ComputeError>,
+        mut serve: impl FnMut(&mut Self, &Dispatch, &mut [&mut SlotRequest]) -> Result<(), ComputeError>,
     ) -> Result<(), ComputeError> {
         for dispatch in self.schedule(some.iter().map(|&i| requests[i].case)) {
-            let mut chosen: Vec<(usize, &mut Asked)> = requests
+            let mut chosen: Vec<(usize, &mut SlotRequest)> = requests
                 .iter_mut()
                 .enumerate()
                 .filter_map(|(i, request)| dispatch.requests.iter().position(|&slot| some[slot] == i).map(|slot| (slot, request)))
                 .collect();
             chosen.sort_by_key(|(slot, _)| *slot);
-            let mut chosen: Vec<&mut Asked> = chosen.into_iter().map(|(_, request)| request).collect();
+            let mut chosen: Vec<&mut SlotRequest> = chosen.into_iter().map(|(_, request)| request).collect();
             serve(self, &dispatch, &mut chosen)?;
         }
         Ok(())
     }
 
-    fn begin_iterates(&mut self, requests: &mut [Asked]) -> Result<(), ComputeError> {
+    fn begin_iterates(&mut self, requests: &mut [SlotRequest]) -> Result<(), ComputeError> {
         for request in requests.iter() {
             if let Ask::Begin(Begin { sliding: Some(sliding), .. }) = &request.ask {
                 self.batch()?.set_sliding(request.case, sliding)?;
             }
         }
-        let shifts = |request: &Asked| matches!(request.ask, Ask::Begin(Begin { from: From::Shift(_), .. }));
+        let shifts = |request: &SlotRequest| matches!(request.ask, Ask::Begin(Begin { from: From::Shift(_), .. }));
         for shifted in [false, true] {
             let some: Vec<usize> = (0..requests.len()).filter(|&i| shifts(&requests[i]) == shifted).collect();
             self.dispatch(requests, &some, |gpu, dispatch, requests| {
-                let marks: Vec<Mark> = requests.iter().map(|request| gpu.first_mark(request)).collect();
+                let marks: Vec<SlotMark> = requests.iter().map(|request| gpu.first_mark(request)).collect();
                 let readouts = if shifted {
                     gpu.batch()?.assess_iterates(dispatch, &marks, true)?
                 } else {
@@ -110,7 +110,7 @@ impl<R: DeviceReal> Gpu<R> {
                 };
                 for ((request, readout), mark) in requests.iter_mut().zip(readouts).zip(&marks) {
                     let read = reading(&readout);
-                    if read.outcome == Outcome::Valid {
+                    if read.outcome == Evaluated::Valid {
                         gpu.current[request.case] = mark.trial;
                     }
                     gpu.note(request.case, mark, &readout);
@@ -122,7 +122,7 @@ impl<R: DeviceReal> Gpu<R> {
         Ok(())
     }
 
-    fn first_mark(&self, request: &Asked) -> Mark {
+    fn first_mark(&self, request: &SlotRequest) -> SlotMark {
         let mut mark = self.mark(request);
         let Ask::Begin(Begin { from, .. }) = &request.ask else { return mark };
         match *from {
@@ -142,7 +142,7 @@ impl<R: DeviceReal> Gpu<R> {
         mark
     }
 
-    fn correct(&mut self, requests: &mut [Asked]) -> Result<(), ComputeError> {
+    fn correct(&mut self, requests: &mut [SlotRequest]) -> Result<(), ComputeError> {
         for held in [false, true] {
             let some: Vec<usize> = (0..requests.len()).filter(|&i| requests[i].plate.held.is_some() == held).collect();
             self.dispatch(requests, &some, |gpu, dispatch, requests| gpu.correct_alike(dispatch, requests))?;
@@ -151,10 +151,11 @@ impl<R: DeviceReal> Gpu<R> {
     }
 
     /// Requests that all hold a force, or none of them.
-    fn correct_alike(&mut self, dispatch: &Dispatch, requests: &mut [&mut Asked]) -> Result<(), ComputeError> {
+    fn correct_alike(&mut self, dispatch: &Dispatch, requests: &mut [&mut SlotRequest]) -> Result<(), ComputeError> {
         let asks: Vec<Correct> =
             requests.iter().filter_map(|request| if let Ask::Correct(ask) = request.ask { Some(ask) } else { None }).collect();
-        let marks: Vec<Mark> = requests.iter().zip(&asks).map(|(request, ask)| self.mark_of_correction(request, ask)).collect();
+        let marks: Vec<SlotMark> =
+            requests.iter().zip(&asks).map(|(request, ask)| self.mark_of_correction(request, ask)).collect();
         let of = |tolerance: fn(&Correct) -> f64, relative: fn(&Correct) -> bool, expected: fn(&Correct) -> usize| {
             let tolerances: Vec<f32> = asks.iter().map(|ask| tolerance(ask) as f32).collect();
             let relative: Vec<bool> = asks.iter().map(relative).collect();
@@ -186,7 +187,7 @@ impl<R: DeviceReal> Gpu<R> {
         Ok(())
     }
 
-    fn mark_of_correction(&self, request: &Asked, ask: &Correct) -> Mark {
+    fn mark_of_correction(&self, request: &SlotRequest, ask: &Correct) -> SlotMark {
         let mut mark = self.mark(request);
         mark.flags |= flags::PLACES_PLATE | if ask.first { flags::IS_FIRST } else { 0 };
         mark.numbers[number::STEP] = 1.0;
@@ -197,10 +198,10 @@ impl<R: DeviceReal> Gpu<R> {
         mark
     }
 
-    fn try_lengths(&mut self, requests: &mut [Asked]) -> Result<(), ComputeError> {
+    fn try_lengths(&mut self, requests: &mut [SlotRequest]) -> Result<(), ComputeError> {
         let all: Vec<usize> = (0..requests.len()).collect();
         self.dispatch(requests, &all, |gpu, dispatch, requests| {
-            let marks: Vec<Mark> = requests.iter().map(|request| gpu.mark_at_length(request)).collect();
+            let marks: Vec<SlotMark> = requests.iter().map(|request| gpu.mark_at_length(request)).collect();
             let readouts = gpu.batch()?.try_iterates(dispatch, &marks)?;
             for ((request, readout), mark) in requests.iter_mut().zip(readouts).zip(&marks) {
                 gpu.note(request.case, mark, &readout);
@@ -210,7 +211,7 @@ impl<R: DeviceReal> Gpu<R> {
         })
     }
 
-    fn mark_at_length(&self, request: &Asked) -> Mark {
+    fn mark_at_length(&self, request: &SlotRequest) -> SlotMark {
         let mut mark = self.mark(request);
         if let Ask::Try(length, delta_h) = request.ask {
             // Rounding must not leave the plate a hair from where it belongs.
@@ -220,14 +221,14 @@ impl<R: DeviceReal> Gpu<R> {
         mark
     }
 
-    fn land(&mut self, requests: &mut [Asked]) -> Result<(), ComputeError> {
+    fn land(&mut self, requests: &mut [SlotRequest]) -> Result<(), ComputeError> {
         let all: Vec<usize> = (0..requests.len()).collect();
         self.dispatch(requests, &all, |gpu, dispatch, requests| {
-            let marks: Vec<Mark> = requests
+            let marks: Vec<SlotMark> = requests
                 .iter()
                 .map(|request| {
                     let mark = gpu.mark(request);
-                    Mark { trial: mark.current, ..mark }
+                    SlotMark { trial: mark.current, ..mark }
                 })
                 .collect();
             let readouts = gpu.batch()?.assess_iterates(dispatch, &marks, false)?;
@@ -239,10 +240,10 @@ impl<R: DeviceReal> Gpu<R> {
         })
     }
 
-    fn settle(&mut self, requests: &mut [Asked]) -> Result<(), ComputeError> {
+    fn settle(&mut self, requests: &mut [SlotRequest]) -> Result<(), ComputeError> {
         let all: Vec<usize> = (0..requests.len()).collect();
         self.dispatch(requests, &all, |gpu, dispatch, requests| {
-            let marks: Vec<Mark> = requests.iter().map(|request| gpu.mark(request)).collect();
+            let marks: Vec<SlotMark> = requests.iter().map(|request| gpu.mark(request)).collect();
             let committed = gpu.batch()?.commit_iterates(dispatch, &marks)?;
             for (request, committed) in requests.iter_mut().zip(committed) {
                 gpu.fresh[request.case] = false;
@@ -269,7 +270,7 @@ impl<R: DeviceReal> Gpu<R> {
     }
 
     /// What moves whole vectors, of one case.
-    fn transfer(&mut self, request: &mut Asked) -> Result<(), ComputeError> {
+    fn transfer(&mut self, request: &mut SlotRequest) -> Result<(), ComputeError> {
         let case = request.case;
         let numbers = |vector: Vec<R>| vector.iter().map(|x| x.to_f64()).collect::<Vec<f64>>();
         request.answer = match &request.ask {
@@ -307,7 +308,7 @@ impl<R: DeviceReal> Gpu<R> {
     }
 
     /// Keeps what the host needs of a trial to scale the next system.
-    fn note(&mut self, case: usize, mark: &Mark, readout: &Readout) {
+    fn note(&mut self, case: usize, mark: &SlotMark, readout: &Readout) {
         self.largest[case][mark.trial as usize] = readout.numbers[9];
     }
 }
@@ -329,7 +330,7 @@ fn alone(reading: Reading) -> Reading {
 
 fn reading(readout: &Readout) -> Reading {
     let Readout { outcome, numbers, counts } = readout;
-    if *outcome != Outcome::Valid {
+    if *outcome != Evaluated::Valid {
         return Reading::of_nothing(*outcome);
     }
     let read = Reading {
@@ -344,5 +345,5 @@ fn reading(readout: &Readout) -> Reading {
         changed: counts[0] as usize,
         landed: counts[1] as usize,
     };
-    read.check().map_or_else(|fault| Reading::of_nothing(Outcome::Invalid(fault)), |()| read)
+    read.check().map_or_else(|fault| Reading::of_nothing(Evaluated::Invalid(fault)), |()| read)
 }

@@ -2,15 +2,15 @@
 
 use super::super::kernel::Kernel;
 use super::super::shader_sources::{BATCH, COULOMB, PLANE, ROWS};
-use super::super::source::{Source, source};
+use super::super::source::{ShaderSource, source};
 
-const TOLD: Source = source!("iterate/told.wgsl");
-const ITERATE: Source = source!("iterate/iterate.wgsl");
-const CONDITIONS: Source = source!("iterate/conditions.wgsl");
-const NODE_INFO: Source = source!("iterate/node_info.wgsl");
-const NODE_RESIDUAL: Source = source!("iterate/residual.wgsl");
-const SUMS: Source = source!("linalg/sums.wgsl");
-const PARTS: Source = source!("iterate/parts.wgsl");
+const TOLD: ShaderSource = source!("iterate/told.wgsl");
+const ITERATE: ShaderSource = source!("iterate/iterate.wgsl");
+const CONDITIONS: ShaderSource = source!("iterate/conditions.wgsl");
+const NODE_INFO: ShaderSource = source!("iterate/node_info.wgsl");
+const NODE_RESIDUAL: ShaderSource = source!("iterate/residual.wgsl");
+const SUMS: ShaderSource = source!("linalg/sums.wgsl");
+const PARTS: ShaderSource = source!("iterate/parts.wgsl");
 
 /// The increments of a trial.
 pub static PLACE: Kernel = Kernel::new("iterate_place", &[BATCH, TOLD, ITERATE, NODE_INFO, PLANE, source!("iterate/place.wgsl")]);

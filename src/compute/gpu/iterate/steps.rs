@@ -3,17 +3,17 @@
 use std::sync::PoisonError;
 
 use super::super::batch::Batch;
-use super::super::buffers::{DeviceReal, Read};
+use super::super::buffers::{DeviceReal, ReadBack};
 use super::super::dispatch::{Dispatch, Evaluation, outcomes};
 use super::super::error::GpuError;
 use super::super::layout::AT_POINT;
 use super::super::linear::records::Solves;
-use super::super::linear::solver::Linear;
-use super::super::pipelines::Recorder;
+use super::super::linear::solver::SlotSolver;
+use super::super::pipelines::KernelList;
 use super::arrays::{Kept, READINGS, SLIDES};
 use super::kernels::Iterates;
-use super::marks::{Brought, Committed, Corrections, Mark, Readout, flags};
-use crate::compute::{Energies, Outcome};
+use super::marks::{Brought, CommitReport, Corrections, Readout, SlotMark, flags};
+use crate::compute::{Energies, Evaluated};
 
 /// Krylov iterations by which a correction's list is longer the second time.
 const MORE_AGAIN: usize = 6;
@@ -33,7 +33,7 @@ impl<R: DeviceReal> Back<R> {
     }
 
     fn readouts(&self) -> Vec<Readout> {
-        let readout = |(slot, outcome): (usize, Outcome)| {
+        let readout = |(slot, outcome): (usize, Evaluated)| {
             let numbers: [f64; READINGS] = std::array::from_fn(|i| self.readings[READINGS * slot + i].to_f64());
             Readout { outcome, numbers, counts: self.counts[slot] }
         };
@@ -47,13 +47,13 @@ impl<R: DeviceReal> Batch<R> {
         self.iterates.is_some()
     }
 
-    fn iterates(&self) -> Result<(&Iterates<R>, &Linear), GpuError> {
+    fn iterates(&self) -> Result<(&Iterates<R>, &SlotSolver), GpuError> {
         let nothing = || GpuError::Length { what: "the iterates of the batch".into(), expected: 1, given: 0 };
         self.iterates.as_ref().zip(self.linear.as_ref()).ok_or_else(nothing)
     }
 
     /// Tells the slots of a dispatch what is to be done.
-    fn tell(&self, dispatch: &Dispatch, marks: &[Mark]) -> Result<(), GpuError> {
+    fn tell(&self, dispatch: &Dispatch, marks: &[SlotMark]) -> Result<(), GpuError> {
         self.begin(dispatch)?;
         // The element's increments are formed on the device.
         self.increments.lock().unwrap_or_else(PoisonError::into_inner).clear();
@@ -65,12 +65,12 @@ impl<R: DeviceReal> Batch<R> {
     }
 
     /// Appends a copy that lets the next evaluation begin as a valid one.
-    fn append_valid(&self, list: &mut Recorder<'_>, slots: usize) -> Result<(), GpuError> {
+    fn append_valid(&self, list: &mut KernelList<'_>, slots: usize) -> Result<(), GpuError> {
         list.copy(&self.iterates()?.0.told.all_valid, 0, &self.scratch.first_invalid, 0, slots)
     }
 
     /// Appends what makes and measures the trials that the marks ask for.
-    fn append_trial(&self, dispatch: &Dispatch, list: &mut Recorder<'_>) -> Result<(), GpuError> {
+    fn append_trial(&self, dispatch: &Dispatch, list: &mut KernelList<'_>) -> Result<(), GpuError> {
         let (nodes, slots) = (self.sizes().nodes, dispatch.cases.len());
         let kernels = &self.iterates()?.0.groups[dispatch.group].1;
         list.dispatch(&kernels.place, nodes, slots)?;
@@ -81,7 +81,7 @@ impl<R: DeviceReal> Batch<R> {
     }
 
     /// Appends what contact makes of the trials, whose forces are there, and their measures.
-    fn append_assessment(&self, dispatch: &Dispatch, list: &mut Recorder<'_>) -> Result<(), GpuError> {
+    fn append_assessment(&self, dispatch: &Dispatch, list: &mut KernelList<'_>) -> Result<(), GpuError> {
         let (sizes, slots) = (self.sizes(), dispatch.cases.len());
         let kernels = &self.iterates()?.0.groups[dispatch.group].1;
         list.dispatch(&kernels.contact, sizes.contact_points, slots)?;
@@ -89,7 +89,7 @@ impl<R: DeviceReal> Batch<R> {
         list.dispatch(&kernels.read, 1, slots)
     }
 
-    fn append_landing(&self, dispatch: &Dispatch, marks: &[Mark], list: &mut Recorder<'_>) -> Result<(), GpuError> {
+    fn append_landing(&self, dispatch: &Dispatch, marks: &[SlotMark], list: &mut KernelList<'_>) -> Result<(), GpuError> {
         if marks.iter().all(|mark| mark.flags & flags::LANDS == 0) {
             return Ok(());
         }
@@ -98,17 +98,17 @@ impl<R: DeviceReal> Batch<R> {
     }
 
     /// Sends a list off and reads what its trials came to.
-    fn read_trials(&self, list: Recorder<'_>, solves: Option<&mut Solves>, back: &mut Back<R>) -> Result<(), GpuError> {
+    fn read_trials(&self, list: KernelList<'_>, solves: Option<&mut Solves>, back: &mut Back<R>) -> Result<(), GpuError> {
         self.read_trials_and(list, solves, back, None)
     }
 
     /// The same, and something else.
     fn read_trials_and(
         &self,
-        list: Recorder<'_>,
+        list: KernelList<'_>,
         mut solves: Option<&mut Solves>,
         back: &mut Back<R>,
-        and: Option<Read<'_>>,
+        and: Option<ReadBack<'_>>,
     ) -> Result<(), GpuError> {
         let (iterates, linear) = self.iterates()?;
         let told = &iterates.told;
@@ -133,7 +133,7 @@ impl<R: DeviceReal> Batch<R> {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn try_iterates(&self, dispatch: &Dispatch, marks: &[Mark]) -> Result<Vec<Readout>, GpuError> {
+    pub fn try_iterates(&self, dispatch: &Dispatch, marks: &[SlotMark]) -> Result<Vec<Readout>, GpuError> {
         self.tell(dispatch, marks)?;
         let mut list = self.context.record();
         self.append_landing(dispatch, marks, &mut list)?;
@@ -148,7 +148,7 @@ impl<R: DeviceReal> Batch<R> {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn assess_iterates(&self, dispatch: &Dispatch, marks: &[Mark], moves: bool) -> Result<Vec<Readout>, GpuError> {
+    pub fn assess_iterates(&self, dispatch: &Dispatch, marks: &[SlotMark], moves: bool) -> Result<Vec<Readout>, GpuError> {
         self.tell(dispatch, marks)?;
         let mut list = self.context.record();
         self.append_landing(dispatch, marks, &mut list)?;
@@ -168,7 +168,12 @@ impl<R: DeviceReal> Batch<R> {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn correct_iterates(&self, dispatch: &Dispatch, marks: &[Mark], systems: [&Solves; 2]) -> Result<Corrections, GpuError> {
+    pub fn correct_iterates(
+        &self,
+        dispatch: &Dispatch,
+        marks: &[SlotMark],
+        systems: [&Solves; 2],
+    ) -> Result<Corrections, GpuError> {
         let (iterates, linear) = self.iterates()?;
         let (sizes, slots) = (self.sizes(), marks.len());
         let kernels = &iterates.groups[dispatch.group].1;
@@ -189,7 +194,7 @@ impl<R: DeviceReal> Batch<R> {
         let units = if held {
             self.hold_forces(dispatch, list, (&mut solves, systems[1]), &mut back)?.reports()
         } else {
-            let tail = |list: &mut Recorder<'_>| {
+            let tail = |list: &mut KernelList<'_>| {
                 list.dispatch(&kernels.expand, sizes.nodes, slots)?;
                 self.append_trial(dispatch, list)
             };
@@ -208,7 +213,7 @@ impl<R: DeviceReal> Batch<R> {
     fn hold_forces(
         &self,
         dispatch: &Dispatch,
-        mut list: Recorder<'_>,
+        mut list: KernelList<'_>,
         (solves, units): (&mut Solves, &Solves),
         back: &mut Back<R>,
     ) -> Result<Solves, GpuError> {
@@ -217,16 +222,16 @@ impl<R: DeviceReal> Batch<R> {
         let (nodes, slots) = (self.sizes().nodes, solves.slots());
         let begun = solves.clone();
         let mut units = units.clone();
-        let of_correction = |list: &mut Recorder<'_>| {
+        let of_correction = |list: &mut KernelList<'_>| {
             linear.append_keep(list, &told.corrections, slots)?;
             list.dispatch(&kernels.expand, nodes, slots)
         };
-        let trial = |list: &mut Recorder<'_>| {
+        let trial = |list: &mut KernelList<'_>| {
             list.dispatch(&kernels.depth, 1, slots)?;
             list.dispatch(&kernels.press, nodes, slots)?;
             self.append_trial(dispatch, list)
         };
-        let of_response = |list: &mut Recorder<'_>| {
+        let of_response = |list: &mut KernelList<'_>| {
             linear.append_keep(list, &told.units, slots)?;
             list.dispatch(&kernels.respond, nodes, slots)?;
             trial(list)
@@ -248,7 +253,7 @@ impl<R: DeviceReal> Batch<R> {
             list.dispatch(&kernels.system, nodes, slots)?;
             linear.set_out(&self.context, &mut list, solves, false)?;
             linear.iterate(&mut list, solves.first_list(), slots)?;
-            let tail = |list: &mut Recorder<'_>| {
+            let tail = |list: &mut KernelList<'_>| {
                 of_correction(list)?;
                 trial(list)
             };
@@ -262,10 +267,10 @@ impl<R: DeviceReal> Batch<R> {
     /// Goes on with solutions that have not finished, and with what `tail` appends after them.
     fn finish(
         &self,
-        linear: &Linear,
+        linear: &SlotSolver,
         solves: &mut Solves,
         back: &mut Back<R>,
-        tail: impl Fn(&mut Recorder<'_>) -> Result<(), GpuError>,
+        tail: impl Fn(&mut KernelList<'_>) -> Result<(), GpuError>,
     ) -> Result<(), GpuError> {
         while solves.go_on() {
             let mut list = self.context.record();
@@ -280,7 +285,7 @@ impl<R: DeviceReal> Batch<R> {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn commit_iterates(&self, dispatch: &Dispatch, marks: &[Mark]) -> Result<Vec<Committed>, GpuError> {
+    pub fn commit_iterates(&self, dispatch: &Dispatch, marks: &[SlotMark]) -> Result<Vec<CommitReport>, GpuError> {
         self.tell(dispatch, marks)?;
         let (sizes, slots, points) = (self.sizes(), marks.len(), self.sizes().contact_points);
         let iterates = self.iterates()?.0;
@@ -305,9 +310,9 @@ impl<R: DeviceReal> Batch<R> {
             told.at_points.read(0, &mut at_points)?,
             told.status.read(0, &mut status)?,
         ])?;
-        let committed = |(slot, outcome): (usize, Outcome)| {
+        let committed = |(slot, outcome): (usize, Evaluated)| {
             let [elastic, plastic, max_alpha] = std::array::from_fn(|i| energies[3 * slot + i].to_f64());
-            Committed {
+            CommitReport {
                 outcome,
                 energies: Energies { elastic, plastic, max_alpha, opponent_plastic: 0.0 },
                 at_points: at_points[AT_POINT * points * slot..][..AT_POINT * points].iter().map(|x| x.to_f64()).collect(),

@@ -7,7 +7,7 @@ use super::super::buffers::StorageBuffer;
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
 use super::super::kernel::Kernel;
-use super::super::pipelines::{Bound, Recorder};
+use super::super::pipelines::{Bound, KernelList};
 use super::super::source::Precision;
 use super::records::Record;
 use super::sizes::LevelShape;
@@ -15,12 +15,12 @@ use super::sources::KRYLOV_RUNNING;
 
 /// A kernel with the threads that it takes.
 #[derive(Debug)]
-pub struct Call {
+pub struct SizedKernel {
     pub(super) bound: Bound,
     threads: usize,
 }
 
-impl Call {
+impl SizedKernel {
     /// Binds a kernel, in single precision.
     ///
     /// # Errors
@@ -48,10 +48,10 @@ impl Call {
     /// workgroups.
     ///
     /// # Errors
-    /// As [`Recorder::dispatch`].
+    /// As [`KernelList::dispatch`].
     pub fn append_running(
         &self,
-        list: &mut Recorder<'_>,
+        list: &mut KernelList<'_>,
         slots: usize,
         calls: (&StorageBuffer<u32>, usize),
     ) -> Result<(), GpuError> {
@@ -61,8 +61,8 @@ impl Call {
     /// Appends it for so many slots.
     ///
     /// # Errors
-    /// As [`Recorder::dispatch`].
-    pub fn append(&self, list: &mut Recorder<'_>, slots: usize) -> Result<(), GpuError> {
+    /// As [`KernelList::dispatch`].
+    pub fn append(&self, list: &mut KernelList<'_>, slots: usize) -> Result<(), GpuError> {
         list.dispatch(&self.bound, self.threads, slots)
     }
 }
@@ -70,23 +70,23 @@ impl Call {
 /// Appends kernels for so many slots.
 ///
 /// # Errors
-/// As [`Recorder::dispatch`].
-pub fn append(calls: &[Call], list: &mut Recorder<'_>, slots: usize) -> Result<(), GpuError> {
+/// As [`KernelList::dispatch`].
+pub fn append(calls: &[SizedKernel], list: &mut KernelList<'_>, slots: usize) -> Result<(), GpuError> {
     calls.iter().try_for_each(|call| call.append(list, slots))
 }
 
 /// What Krylov iterations are dispatched for: the slots that run.
 #[derive(Debug)]
-pub struct Running {
+pub struct RunningSlots {
     /// Workgroups along x, y and z, for each number of them along x.
     calls: StorageBuffer<u32>,
     /// The numbers along x, increasing.
     groups: Vec<usize>,
     /// Lists the slots, and writes how many there are.
-    pub list: Call,
+    pub list: SizedKernel,
 }
 
-impl Running {
+impl RunningSlots {
     /// That of kernels which have so many workgroups for a slot.
     ///
     /// # Errors
@@ -100,15 +100,15 @@ impl Running {
         let groups: Vec<usize> = groups.collect::<BTreeSet<_>>().into_iter().collect();
         let numbers: Vec<u32> = groups.iter().flat_map(|&groups| [groups as u32, 0, 1]).collect();
         let calls = context.calls("workgroups of slots that run", &numbers)?;
-        let list = Call::new(context, &KRYLOV_RUNNING, 1, &args! { level, records, calls })?;
+        let list = SizedKernel::new(context, &KRYLOV_RUNNING, 1, &args! { level, records, calls })?;
         Ok(Self { calls, groups, list })
     }
 
     /// Appends kernels for the slots of the list.
     ///
     /// # Errors
-    /// As [`Recorder::dispatch`].
-    pub fn append(&self, kernels: &[Call], list: &mut Recorder<'_>, slots: usize) -> Result<(), GpuError> {
+    /// As [`KernelList::dispatch`].
+    pub fn append(&self, kernels: &[SizedKernel], list: &mut KernelList<'_>, slots: usize) -> Result<(), GpuError> {
         kernels.iter().try_for_each(|call| {
             let place = self.groups.partition_point(|&groups| groups < call.groups());
             call.append_running(list, slots, (&self.calls, 3 * place))

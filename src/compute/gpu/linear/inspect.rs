@@ -3,10 +3,10 @@
 
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
-use super::parts::Part;
+use super::parts::SolvePart;
 use super::records::Record;
 use super::sizes::{RESTART, small_numbers};
-use super::solver::Linear;
+use super::solver::SlotSolver;
 
 /// What a slot has on a level after an update and a V-cycle.
 #[derive(Clone, Debug)]
@@ -43,7 +43,7 @@ pub struct Cycle {
     pub answer: Vec<f32>,
 }
 
-impl Linear {
+impl SlotSolver {
     /// Number of levels of the hierarchy.
     pub fn depth(&self) -> usize {
         self.levels.levels.len()
@@ -55,7 +55,7 @@ impl Linear {
     /// The device's fault.
     pub fn v_cycle(&self, context: &GpuContext, b: &[f32]) -> Result<(), GpuError> {
         context.upload_at(&self.levels.levels[0].b, 0, b)?;
-        self.repeat(context, Part::Cycle, 1, 1)
+        self.repeat(context, SolvePart::Cycle, 1, 1)
     }
 
     /// What slot 0 has on a level, the finest being 0.

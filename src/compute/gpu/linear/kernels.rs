@@ -5,7 +5,7 @@ use super::super::buffers::{DeviceReal, StorageBuffer};
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
 use super::arrays::Arrays;
-use super::calls::{Call, Running};
+use super::calls::{RunningSlots, SizedKernel};
 use super::levels::Levels;
 use super::plan::Plan;
 use super::sizes::{CHUNK, THREADS, row_threads};
@@ -16,28 +16,28 @@ use super::sources::{
 
 /// Lists of kernels, in the order in which they run.
 #[derive(Debug)]
-pub struct Kernels {
+pub struct LinearKernels {
     /// Forms the finest level's matrix.
-    pub assemble: Call,
+    pub assemble: SizedKernel,
     /// Writes what is fixed into `solution`.
-    pub prescribe: Call,
+    pub prescribe: SizedKernel,
     /// The residual there, and its square.
-    pub residual: Vec<Call>,
+    pub residual: Vec<SizedKernel>,
     /// What tolerances are measured by.
-    pub measure: Call,
+    pub measure: SizedKernel,
     /// The first basis vector.
-    pub begin: Vec<Call>,
+    pub begin: Vec<SizedKernel>,
     /// A Krylov iteration after the V-cycle, up to the decision which slots go on.
-    pub iteration: Vec<Call>,
+    pub iteration: Vec<SizedKernel>,
     /// Which those are.
-    pub running: Running,
+    pub running: RunningSlots,
     /// The next basis vector of those.
-    pub next: Call,
+    pub next: SizedKernel,
     /// The answer, from the vectors of a cycle.
-    pub finish: Vec<Call>,
+    pub finish: Vec<SizedKernel>,
 }
 
-impl Kernels {
+impl LinearKernels {
     /// Binds them; `blocks` are the tangents that the gathering kernels leave.
     ///
     /// # Errors
@@ -53,10 +53,10 @@ impl Kernels {
         let by_chunks = unknowns.div_ceil(CHUNK) * THREADS;
         let Arrays { records, rows, rhs, solution, answer, basis, preconditioned, small, partial_sums, squares, .. } = arrays;
         let call = |kernel, threads, arguments: &[Argument<'_>]| {
-            Call::new(context, kernel, threads, &[&args! { level: level.block }, arguments].concat())
+            SizedKernel::new(context, kernel, threads, &[&args! { level: level.block }, arguments].concat())
         };
         let with_product = |kernel, threads, x, arguments: &[Argument<'_>]| {
-            Call::new(context, kernel, threads, &[&level.product(x), arguments].concat())
+            SizedKernel::new(context, kernel, threads, &[&level.product(x), arguments].concat())
         };
         let of_matrix = args! {
             level: level.block,
@@ -85,12 +85,12 @@ impl Kernels {
         let kernels = levels.cycle.iter().chain(&iteration).chain([&next]);
         let residual = args! { b: rhs, is_fixed: level.fixed, r: w, records };
         Ok(Self {
-            assemble: Call::of(context.bind(&ASSEMBLE, T::PRECISION, &of_matrix)?, finest.blocks() / 2),
+            assemble: SizedKernel::of(context.bind(&ASSEMBLE, T::PRECISION, &of_matrix)?, finest.blocks() / 2),
             prescribe: call(&PRESCRIBE, by_rows, &args! { rhs, is_fixed: level.fixed, solution })?,
             residual: vec![with_product(&RESIDUAL, by_rows, solution, &residual)?, dots()?],
             measure: call(&KRYLOV_MEASURE, 1, &args! { records, partial_sums })?,
             begin: vec![call(&KRYLOV_BEGIN, 1, &args! { records, partial_sums, small })?, normalise()?],
-            running: Running::new(context, kernels.map(Call::groups), &level.block, records)?,
+            running: RunningSlots::new(context, kernels.map(SizedKernel::groups), &level.block, records)?,
             iteration,
             next,
             finish: vec![

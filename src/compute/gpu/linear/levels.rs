@@ -6,14 +6,14 @@ use super::super::context::GpuContext;
 use super::super::error::GpuError;
 use super::super::kernel::Kernel;
 use super::super::pools::Pools;
-use super::calls::Call;
+use super::calls::SizedKernel;
 use super::records::Record;
-use super::sizes::{Account, LevelShape, MOST_STEPS, RESTART, SMALL_NODES, row_threads};
+use super::sizes::{Cost, LevelShape, MOST_STEPS, RESTART, SMALL_NODES, row_threads};
 use super::sources::{
     CYCLE_RESIDUAL, GALERKIN_COARSE, GALERKIN_PRODUCT, INVERT_DIAGONAL, PROLONG, RESTRICT, SMALL_DOWN, SMALL_UP, SMOOTH_START,
     SMOOTH_STEP, SOLVE_COARSEST,
 };
-use crate::linalg::layout::{Layout, LevelLayout, Lists, Rows, TransferLayout};
+use crate::linalg::layout::{HierarchyLayout, LevelLayout, Lists, SparseRows, TransferLayout};
 
 /// What all levels share.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +28,7 @@ pub struct Common<'a> {
 
 /// One level's arrays.
 #[derive(Debug)]
-pub struct Level {
+pub struct LevelArrays {
     /// Its sizes.
     pub block: StorageBuffer<LevelShape>,
     /// Columns `[k][node]`.
@@ -49,13 +49,13 @@ pub struct Level {
     other: StorageBuffer<f32>,
     last_step: StorageBuffer<f32>,
     residual: StorageBuffer<f32>,
-    transfer: Option<Transfer>,
+    transfer: Option<TransferArrays>,
     nodes: usize,
     width: usize,
 }
 
 #[derive(Debug)]
-struct Transfer {
+struct TransferArrays {
     product_lists: DeviceLists,
     coarse_lists: DeviceLists,
     /// As `transfer.wgsl` has them.
@@ -94,7 +94,7 @@ impl DeviceLists {
 }
 
 /// A matrix as `transfer.wgsl` has it: where each row begins, then columns with their weights.
-fn transfer_rows(rows: &Rows) -> Vec<u32> {
+fn transfer_rows(rows: &SparseRows) -> Vec<u32> {
     let first = rows.start.len() as u32;
     let entries = rows.column.iter().zip(&rows.weight).flat_map(|(&column, weight)| [column, weight.to_bits()]);
     rows.start.iter().map(|start| first + 2 * start).chain(entries).collect()
@@ -114,13 +114,13 @@ pub fn product_numbers(level: &LevelLayout) -> usize {
 pub fn shared_numbers(level: &LevelLayout) -> usize {
     let transfer = level.transfer.as_ref().map_or(0, |t| {
         let lists = |lists: &Lists| lists.start.len() + lists.entry.len() + lists.weight.len();
-        let rows = |rows: &Rows| rows.start.len() + rows.column.len() + rows.weight.len();
+        let rows = |rows: &SparseRows| rows.start.len() + rows.column.len() + rows.weight.len();
         lists(&t.product) + lists(&t.coarse) + rows(&t.prolongation) + rows(&t.restriction)
     });
     level.column.len() + level.diagonal.len() + transfer
 }
 
-impl Level {
+impl LevelArrays {
     /// The arrays of a level for so many slots.
     ///
     /// # Errors
@@ -140,7 +140,7 @@ impl Level {
                     Some(pool) => pool.view("products A P", numbers)?,
                     None => context.zeros("products A P", numbers)?,
                 };
-                Some(Transfer::new(context, transfer, next, product.each(slots))?)
+                Some(TransferArrays::new(context, transfer, next, product.each(slots))?)
             }
             _ => None,
         };
@@ -183,31 +183,31 @@ impl Level {
     }
 
     /// A product with its matrix, and what the result takes and gives.
-    pub fn product_account(&self) -> Account {
+    pub fn product_account(&self) -> Cost {
         let (nodes, blocks) = (self.nodes, self.width * self.nodes);
-        Account { numbers: 9 * blocks + (3 * 3 + 1) * nodes, shared: blocks, operations: 18 * blocks }
+        Cost { numbers: 9 * blocks + (3 * 3 + 1) * nodes, shared: blocks, operations: 18 * blocks }
     }
 
     /// The same with the rounded matrix, whose numbers take half the bytes, and what it lacks.
-    fn rounded_account(&self) -> Account {
+    fn rounded_account(&self) -> Cost {
         let product = self.product_account();
         let (nodes, blocks) = (self.nodes, self.width * self.nodes);
-        Account { numbers: product.numbers - 9 * blocks / 2 + 9 * nodes, operations: product.operations + 18 * nodes, ..product }
+        Cost { numbers: product.numbers - 9 * blocks / 2 + 9 * nodes, operations: product.operations + 18 * nodes, ..product }
     }
 
     /// A step of its smoother: such a product, D^-1, right-hand side, last step and iterate.
-    pub fn step_account(&self) -> Account {
+    pub fn step_account(&self) -> Cost {
         let product = self.rounded_account();
         let nodes = self.nodes;
-        Account { numbers: product.numbers + (9 + 3 * 3) * nodes, operations: product.operations + 30 * nodes, ..product }
+        Cost { numbers: product.numbers + (9 + 3 * 3) * nodes, operations: product.operations + 30 * nodes, ..product }
     }
 
     /// A P of it, and the next level's matrix of that.
-    pub fn galerkin_account(&self) -> Account {
-        let Some(transfer) = &self.transfer else { return Account::default() };
+    pub fn galerkin_account(&self) -> Cost {
+        let Some(transfer) = &self.transfer else { return Cost::default() };
         let (products, coarse) = (9 * transfer.products, 9 * transfer.coarse_blocks);
         let lists = [&transfer.product_lists, &transfer.coarse_lists];
-        Account {
+        Cost {
             numbers: 9 * self.width * self.nodes + 2 * products + coarse + self.nodes,
             shared: lists.iter().map(|list| list.start.len() + 2 * list.entry.len()).sum(),
             operations: lists.iter().map(|list| 18 * list.entry.len()).sum(),
@@ -225,7 +225,7 @@ impl Level {
     }
 }
 
-impl Transfer {
+impl TransferArrays {
     fn new(
         context: &GpuContext,
         layout: &TransferLayout,
@@ -250,11 +250,11 @@ impl Transfer {
 #[derive(Debug)]
 pub struct Levels {
     /// Finest first.
-    pub levels: Vec<Level>,
+    pub levels: Vec<LevelArrays>,
     /// After the finest matrix has changed.
-    pub update: Vec<Call>,
+    pub update: Vec<SizedKernel>,
     /// One V-cycle on the finest level's b.
-    pub cycle: Vec<Call>,
+    pub cycle: Vec<SizedKernel>,
     smoothing_steps: usize,
     _shares: Vec<StorageBuffer<[f32; 4]>>,
     _all_shares: StorageBuffer<[f32; 4]>,
@@ -269,7 +269,7 @@ impl Levels {
     /// What the device says.
     pub fn new(
         context: &GpuContext,
-        layout: &Layout,
+        layout: &HierarchyLayout,
         (slots, pools): (usize, &Pools),
         plate_nodes: usize,
         records: &StorageBuffer<Record>,
@@ -279,7 +279,7 @@ impl Levels {
         let pool = |l: usize| (l == 0).then_some(&pools.blocks);
         let common = |l| Common { slots, pool: pool(l), plate_nodes, coarsest_steps, smoothing_steps };
         let levels = (0..layouts.len())
-            .map(|l| Level::new(context, &layouts[l], layouts.get(l + 1), common(l)))
+            .map(|l| LevelArrays::new(context, &layouts[l], layouts.get(l + 1), common(l)))
             .collect::<Result<Vec<_>, _>>()?;
         let shares = layout
             .smoother
@@ -326,19 +326,19 @@ impl Levels {
 
 impl Levels {
     /// The kernels of the finest level's Galerkin product; none where it is the only level.
-    pub fn galerkin(&self) -> &[Call] {
+    pub fn galerkin(&self) -> &[SizedKernel] {
         if self.levels.len() > 1 { &self.update[1..3] } else { &[] }
     }
 
     /// A step of the smoother on the finest level; none where it is the only level.
-    pub fn smoother_step(&self) -> &[Call] {
+    pub fn smoother_step(&self) -> &[SizedKernel] {
         if self.levels.len() > 1 && self.smoothing_steps > 1 { &self.cycle[1..2] } else { &[] }
     }
 
     /// A V-cycle. Levels that one workgroup smooths read their matrix as often as the others, from
     /// caches.
-    pub fn cycle_account(&self) -> Account {
-        let mut all = Account::default();
+    pub fn cycle_account(&self) -> Cost {
+        let mut all = Cost::default();
         for level in &self.levels {
             let (product, step) = (level.rounded_account(), level.step_account());
             // From zero the first step needs no product; on the way up all do.
@@ -356,7 +356,7 @@ impl Levels {
 
 /// A level so small that one workgroup smooths it whole: its dispatches are saved. Not the finest,
 /// where some unknowns are fixed.
-fn is_small(l: usize, level: &Level) -> bool {
+fn is_small(l: usize, level: &LevelArrays) -> bool {
     l > 0 && level.nodes <= SMALL_NODES
 }
 
@@ -368,11 +368,11 @@ struct Binder<'a> {
 }
 
 impl Binder<'_> {
-    fn call(&self, kernel: &'static Kernel, threads: usize, arguments: &[&[Argument<'_>]]) -> Result<Call, GpuError> {
-        Call::new(self.context, kernel, threads, &arguments.concat())
+    fn call(&self, kernel: &'static Kernel, threads: usize, arguments: &[&[Argument<'_>]]) -> Result<SizedKernel, GpuError> {
+        SizedKernel::new(self.context, kernel, threads, &arguments.concat())
     }
 
-    fn inverse(&self, level: &Level) -> Result<Call, GpuError> {
+    fn inverse(&self, level: &LevelArrays) -> Result<SizedKernel, GpuError> {
         let arguments = args! {
             level: level.block,
             matrix: level.matrix,
@@ -384,7 +384,7 @@ impl Binder<'_> {
         self.call(&INVERT_DIAGONAL, level.nodes, &[&arguments])
     }
 
-    fn galerkin(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<[Call; 2], GpuError> {
+    fn galerkin(&self, level: &LevelArrays, transfer: &TransferArrays, next: &LevelArrays) -> Result<[SizedKernel; 2], GpuError> {
         let block = &args! { level: level.block };
         let product = args! { given: level.matrix, to: transfer.product, column: level.column, is_fixed: level.fixed };
         let coarse = args! { given: transfer.product, to: next.matrix };
@@ -396,7 +396,13 @@ impl Binder<'_> {
     }
 
     /// A step of the smoother from `x` to `next`.
-    fn smooth(&self, level: &Level, step: usize, x: &StorageBuffer<f32>, next: &StorageBuffer<f32>) -> Result<Call, GpuError> {
+    fn smooth(
+        &self,
+        level: &LevelArrays,
+        step: usize,
+        x: &StorageBuffer<f32>,
+        next: &StorageBuffer<f32>,
+    ) -> Result<SizedKernel, GpuError> {
         let arguments = args! {
             inverse: level.inverse,
             b: level.b,
@@ -410,7 +416,7 @@ impl Binder<'_> {
 
     /// Smoothing from zero, which leaves `other` where the number of steps is odd, and what is left
     /// to the next level.
-    fn down(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<Vec<Call>, GpuError> {
+    fn down(&self, level: &LevelArrays, transfer: &TransferArrays, next: &LevelArrays) -> Result<Vec<SizedKernel>, GpuError> {
         let start = args! {
             level: level.block,
             inverse: level.inverse,
@@ -438,7 +444,7 @@ impl Binder<'_> {
         Ok(out)
     }
 
-    fn restrict(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<Call, GpuError> {
+    fn restrict(&self, level: &LevelArrays, transfer: &TransferArrays, next: &LevelArrays) -> Result<SizedKernel, GpuError> {
         let arguments = args! {
             level: level.block,
             transfer: transfer.restriction,
@@ -449,7 +455,7 @@ impl Binder<'_> {
         self.call(&RESTRICT, row_threads(transfer.coarse_nodes), &[&arguments])
     }
 
-    fn small<'a>(&'a self, level: &'a Level) -> [Argument<'a>; 8] {
+    fn small<'a>(&'a self, level: &'a LevelArrays) -> [Argument<'a>; 8] {
         args! {
             level: level.block,
             column: level.column,
@@ -463,18 +469,23 @@ impl Binder<'_> {
     }
 
     /// As [`Binder::down`], by one workgroup a slot; it leaves `x`.
-    fn small_down(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<[Call; 2], GpuError> {
+    fn small_down(
+        &self,
+        level: &LevelArrays,
+        transfer: &TransferArrays,
+        next: &LevelArrays,
+    ) -> Result<[SizedKernel; 2], GpuError> {
         let residual = args! { residual: level.residual };
         Ok([self.call(&SMALL_DOWN, 1, &[&self.small(level), &residual])?, self.restrict(level, transfer, next)?])
     }
 
     /// As [`Binder::up`], by one workgroup a slot.
-    fn small_up(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<Call, GpuError> {
+    fn small_up(&self, level: &LevelArrays, transfer: &TransferArrays, next: &LevelArrays) -> Result<SizedKernel, GpuError> {
         self.call(&SMALL_UP, 1, &[&self.small(level), &args! { transfer: transfer.prolongation, coarse: next.x }])
     }
 
     /// The next level's correction, and smoothing, which ends in `x`.
-    fn up(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<Vec<Call>, GpuError> {
+    fn up(&self, level: &LevelArrays, transfer: &TransferArrays, next: &LevelArrays) -> Result<Vec<SizedKernel>, GpuError> {
         let odd = self.shares.len() % 2 == 1;
         let (mut x, mut free) = if odd { (&level.other, &level.x) } else { (&level.x, &level.other) };
         let arguments = args! {
@@ -493,7 +504,7 @@ impl Binder<'_> {
         Ok(out)
     }
 
-    fn coarsest(&self, level: &Level, shares: &StorageBuffer<[f32; 2]>) -> Result<Call, GpuError> {
+    fn coarsest(&self, level: &LevelArrays, shares: &StorageBuffer<[f32; 2]>) -> Result<SizedKernel, GpuError> {
         let arguments = args! {
             inverse: level.inverse,
             b: level.b,

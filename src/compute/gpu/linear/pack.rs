@@ -1,8 +1,8 @@
 //! Systems as the device takes them, and its answers as they are asked for.
 
 use super::super::layout::POINT_ROWS;
-use super::solver::{Answers, Right};
-use crate::compute::linear::{Side, SideReport, Solution, System};
+use super::solver::{Right, SideSolutions};
+use crate::compute::linear::{Side, SideReport, Solution, SolveRequest};
 use crate::contact::coulomb::Status;
 
 /// The systems of a dispatch, slot by slot.
@@ -21,7 +21,7 @@ pub struct Packed {
 
 impl Packed {
     /// Packs systems in the order of their slots.
-    pub fn new(systems: &[&System]) -> Self {
+    pub fn new(systems: &[&SolveRequest]) -> Self {
         let mut out = Self { rows: Vec::new(), fixed: Vec::new(), sides: Vec::new(), factors: Vec::new() };
         for system in systems {
             out.pack_rows(system);
@@ -41,7 +41,7 @@ impl Packed {
         out
     }
 
-    fn pack_rows(&mut self, system: &System) {
+    fn pack_rows(&mut self, system: &SolveRequest) {
         let (first, points) = (self.rows.len(), system.rows.len());
         self.rows.resize(first + POINT_ROWS * points, 0.0);
         for (k, rows) in system.rows.iter().enumerate().filter(|(_, rows)| rows.status == Status::Slip) {
@@ -54,9 +54,9 @@ impl Packed {
     }
 
     /// What the device answered for a slot: fixed unknowns keep the values that were given.
-    pub fn unpack(&self, slot: usize, answers: &[Answers], system: &System) -> Vec<Solution> {
+    pub fn unpack(&self, slot: usize, answers: &[SideSolutions], system: &SolveRequest) -> Vec<Solution> {
         let sides = system.sides.iter().zip(answers).zip(&self.factors);
-        let solution = |((side, (solutions, reports)), factors): ((&Side, &Answers), &Vec<f64>)| {
+        let solution = |((side, (solutions, reports)), factors): ((&Side, &SideSolutions), &Vec<f64>)| {
             let (back, n) = (1.0 / factors[slot], side.rhs.len());
             let solution = &solutions[slot * n..][..n];
             let value = |i: usize| {
@@ -77,7 +77,7 @@ impl Packed {
 }
 
 /// Appends a side of a slot; returns the factor of its numbers.
-fn pack_side(system: &System, side: Option<&Side>, has_guess: bool, right: &mut Right) -> f64 {
+fn pack_side(system: &SolveRequest, side: Option<&Side>, has_guess: bool, right: &mut Right) -> f64 {
     let n = system.fixed.len();
     let largest = side.map_or(0.0, |side| side.rhs.iter().fold(0.0_f64, |m, b| m.max(b.abs())));
     let factor = if largest > 0.0 && largest.is_finite() { (-largest.log2().floor()).exp2() } else { 1.0 };

@@ -4,13 +4,13 @@ use super::super::layout::POINT_ROWS;
 use super::levels::{product_numbers, shared_numbers, slot_numbers};
 use super::records::Record;
 use super::sizes::{CHUNK, RESTART, small_numbers};
-use crate::linalg::layout::{Layout, NOWHERE};
+use crate::linalg::layout::{HierarchyLayout, NOWHERE};
 use crate::mesh::Mesh;
 
 /// What the linear solver of a connectivity needs to know, before anything is allocated.
 #[derive(Debug)]
 pub struct Plan {
-    pub(super) layout: Layout,
+    pub(super) layout: HierarchyLayout,
     /// Per block of the finest level: where it is in the tangent's upper triangle.
     pub(super) source: Vec<u32>,
     pub(super) point_of: Vec<u32>,
@@ -26,7 +26,7 @@ impl Plan {
         if mesh.hierarchy.is_empty() || mesh.couple.is_some() {
             return None;
         }
-        let layout = Layout::new(pattern, &mesh.hierarchy).ok()?;
+        let layout = HierarchyLayout::new(pattern, &mesh.hierarchy).ok()?;
         let finest = &layout.levels[0];
         let of_block = |&at: &u32| if at == NOWHERE { NOWHERE } else { source[at as usize] };
         let mut point_of = vec![NOWHERE; mesh.nodes.len()];

@@ -1,6 +1,6 @@
 //! How linear solves stand, slot by slot.
 
-use super::super::buffers::{Read, StorageBuffer};
+use super::super::buffers::{ReadBack, StorageBuffer};
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
 use super::sizes::RESTART;
@@ -112,7 +112,7 @@ impl Solves {
     ///
     /// # Errors
     /// [`GpuError::Length`] for more slots than there are.
-    pub fn read_kept<'a>(&'a mut self, kept: &'a StorageBuffer<Record>) -> Result<Read<'a>, GpuError> {
+    pub fn read_kept<'a>(&'a mut self, kept: &'a StorageBuffer<Record>) -> Result<ReadBack<'a>, GpuError> {
         kept.read(0, &mut self.records)
     }
 

@@ -43,7 +43,7 @@ pub struct LevelShape {
 
 /// Memory traffic and work of a part of a solve: what it is for one slot, and what all slots share.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Account {
+pub struct Cost {
     /// Numbers of four bytes that are read or written, each once a kernel.
     pub numbers: usize,
     /// Alike, of lists that all slots share.

@@ -1,13 +1,13 @@
 //! The linear solver of a batch's slots.
 
-use super::super::buffers::{DeviceReal, Read, StorageBuffer};
+use super::super::buffers::{DeviceReal, ReadBack, StorageBuffer};
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
-use super::super::pipelines::Recorder;
+use super::super::pipelines::KernelList;
 use super::super::pools::Pools;
 use super::arrays::Arrays;
 use super::calls::append;
-use super::kernels::Kernels;
+use super::kernels::LinearKernels;
 use super::levels::Levels;
 use super::plan::Plan;
 use super::records::{FULL, RUNNING, Record, Solves};
@@ -32,20 +32,20 @@ pub struct Right {
 }
 
 /// Solutions `[slot][component][node]` of one side, and how they went by slot.
-pub type Answers = (Vec<f32>, Vec<SideReport>);
+pub type SideSolutions = (Vec<f32>, Vec<SideReport>);
 
 /// The linear solver of a batch's slots.
 #[derive(Debug)]
-pub struct Linear {
+pub struct SlotSolver {
     pub(super) levels: Levels,
     pub(super) arrays: Arrays,
-    pub(super) kernels: Kernels,
+    pub(super) kernels: LinearKernels,
     pub(super) unknowns: usize,
     /// Numbers of the tangent's upper blocks.
     pub(super) upper_numbers: usize,
 }
 
-impl Linear {
+impl SlotSolver {
     /// The arrays and kernels for so many slots, some in memory that they share with others;
     /// `blocks` are the tangents that the gathering kernels leave.
     ///
@@ -60,7 +60,7 @@ impl Linear {
         let records = context.zeros("linear solves", slots.0)?;
         let levels = Levels::new(context, &plan.layout, slots, plan.plate.len(), &records)?;
         let arrays = Arrays::new(context, plan, slots, records)?;
-        let kernels = Kernels::new(context, plan, (&levels, &arrays), blocks)?;
+        let kernels = LinearKernels::new(context, plan, (&levels, &arrays), blocks)?;
         let unknowns = 3 * plan.layout.levels[0].nodes;
         Ok(Self { levels, arrays, kernels, unknowns, upper_numbers: 9 * plan.upper_blocks })
     }
@@ -74,7 +74,7 @@ impl Linear {
     pub fn update(
         &self,
         context: &GpuContext,
-        list: &mut Recorder<'_>,
+        list: &mut KernelList<'_>,
         rows: &[f32],
         fixed: &[u32],
         slots: usize,
@@ -88,7 +88,7 @@ impl Linear {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn append_update(&self, list: &mut Recorder<'_>, slots: usize) -> Result<(), GpuError> {
+    pub fn append_update(&self, list: &mut KernelList<'_>, slots: usize) -> Result<(), GpuError> {
         self.kernels.assemble.append(list, slots)?;
         append(&self.levels.update, list, slots)
     }
@@ -101,7 +101,7 @@ impl Linear {
     pub fn solve(
         &self,
         context: &GpuContext,
-        mut list: Recorder<'_>,
+        mut list: KernelList<'_>,
         right: &Right,
         and: (&StorageBuffer<u32>, &mut [u32]),
     ) -> Result<(Vec<f32>, Vec<SideReport>), GpuError> {
@@ -130,7 +130,7 @@ impl Linear {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn set_out(&self, context: &GpuContext, list: &mut Recorder<'_>, solves: &Solves, guess: bool) -> Result<(), GpuError> {
+    pub fn set_out(&self, context: &GpuContext, list: &mut KernelList<'_>, solves: &Solves, guess: bool) -> Result<(), GpuError> {
         context.upload_at(&self.arrays.records, 0, &solves.records)?;
         self.append_begin(list, solves.slots(), guess)
     }
@@ -142,7 +142,7 @@ impl Linear {
     /// The device's fault.
     pub fn set_out_after(
         &self,
-        list: &mut Recorder<'_>,
+        list: &mut KernelList<'_>,
         records: &StorageBuffer<Record>,
         slots: usize,
         guess: bool,
@@ -155,11 +155,11 @@ impl Linear {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn append_keep(&self, list: &mut Recorder<'_>, records: &StorageBuffer<Record>, slots: usize) -> Result<(), GpuError> {
+    pub fn append_keep(&self, list: &mut KernelList<'_>, records: &StorageBuffer<Record>, slots: usize) -> Result<(), GpuError> {
         list.copy(&self.arrays.records, 0, records, 0, slots)
     }
 
-    fn append_begin(&self, list: &mut Recorder<'_>, slots: usize, guess: bool) -> Result<(), GpuError> {
+    fn append_begin(&self, list: &mut KernelList<'_>, slots: usize, guess: bool) -> Result<(), GpuError> {
         self.kernels.prescribe.append(list, slots)?;
         append(&self.kernels.residual, list, slots)?;
         self.kernels.measure.append(list, slots)?;
@@ -174,7 +174,7 @@ impl Linear {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn take_up(&self, context: &GpuContext, list: &mut Recorder<'_>, solves: &mut Solves) -> Result<(), GpuError> {
+    pub fn take_up(&self, context: &GpuContext, list: &mut KernelList<'_>, solves: &mut Solves) -> Result<(), GpuError> {
         let slots = solves.slots();
         // All slots are in the same step of their cycles: those that go on are all full, or none.
         let records = &mut solves.records;
@@ -197,7 +197,7 @@ impl Linear {
     ///
     /// # Errors
     /// [`GpuError::Length`] for more slots than there are.
-    pub fn read<'a>(&'a self, solves: &'a mut Solves) -> Result<Read<'a>, GpuError> {
+    pub fn read<'a>(&'a self, solves: &'a mut Solves) -> Result<ReadBack<'a>, GpuError> {
         self.arrays.records.read(0, &mut solves.records)
     }
 
@@ -240,7 +240,7 @@ impl Linear {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn iterate(&self, list: &mut Recorder<'_>, times: usize, slots: usize) -> Result<(), GpuError> {
+    pub fn iterate(&self, list: &mut KernelList<'_>, times: usize, slots: usize) -> Result<(), GpuError> {
         // Which slots leave them out is known when they have run: see `count`.
         list.count_for(Some(0));
         let running = &self.kernels.running;

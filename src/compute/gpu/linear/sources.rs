@@ -1,20 +1,20 @@
 //! The kernels of the linear solver. All of them run in single precision.
 
 use super::super::kernel::Kernel;
-use super::super::source::{Source, source};
+use super::super::source::{ShaderSource, source};
 
-const LEVEL: Source = source!("linalg/level.wgsl");
-const RECORD: Source = source!("linalg/record.wgsl");
-const HALVES: Source = source!("linalg/halves.wgsl");
-const PRODUCT: Source = source!("linalg/product.wgsl");
-const ROW_TIMES: Source = source!("linalg/row_times.wgsl");
-const ROUNDED_ROW_TIMES: Source = source!("linalg/rounded_row_times.wgsl");
-const GALERKIN: Source = source!("linalg/galerkin.wgsl");
-const TRANSFER: Source = source!("linalg/transfer.wgsl");
-const KRYLOV: Source = source!("linalg/krylov.wgsl");
-const SUMS: Source = source!("linalg/sums.wgsl");
-const SMALL: Source = source!("linalg/small.wgsl");
-const NORM: Source = source!("linalg/norm.wgsl");
+const LEVEL: ShaderSource = source!("linalg/level.wgsl");
+const RECORD: ShaderSource = source!("linalg/record.wgsl");
+const HALVES: ShaderSource = source!("linalg/halves.wgsl");
+const PRODUCT: ShaderSource = source!("linalg/product.wgsl");
+const ROW_TIMES: ShaderSource = source!("linalg/row_times.wgsl");
+const ROUNDED_ROW_TIMES: ShaderSource = source!("linalg/rounded_row_times.wgsl");
+const GALERKIN: ShaderSource = source!("linalg/galerkin.wgsl");
+const TRANSFER: ShaderSource = source!("linalg/transfer.wgsl");
+const KRYLOV: ShaderSource = source!("linalg/krylov.wgsl");
+const SUMS: ShaderSource = source!("linalg/sums.wgsl");
+const SMALL: ShaderSource = source!("linalg/small.wgsl");
+const NORM: ShaderSource = source!("linalg/norm.wgsl");
 
 /// The tangent as the finest level's matrix.
 pub static ASSEMBLE: Kernel = Kernel::new("assemble", &[LEVEL, HALVES, source!("linalg/assemble.wgsl")]);

@@ -4,8 +4,8 @@ use super::*;
 use crate::element::hex8::fields;
 use crate::material::j2;
 
-fn energy(g: &Geometry<f64>, m: &Material<f64>, u: &Nodal<f64>) -> f64 {
-    let (state, energy) = update(g, m, &State::default(), &State::default().points, &ZERO, u).unwrap();
+fn energy(g: &ElementGeometry<f64>, m: &Material<f64>, u: &Nodal<f64>) -> f64 {
+    let (state, energy) = update(g, m, &ElementState::default(), &ElementState::default().points, &ZERO, u).unwrap();
     let shown = fields(g, m, &state.points, u).unwrap().elastic_energy;
     assert!((energy - shown).abs() <= 1e-12 * shown, "{energy:e} {shown:e}");
     energy
@@ -17,7 +17,7 @@ fn the_elastic_force_is_the_derivative_of_the_energy() {
     let m = elastic();
     for amplitude in [1e-3, 0.05, 0.2] {
         let u = wild(21, amplitude);
-        let f = force(&g, &m, &State::default(), &ZERO, &u);
+        let f = force(&g, &m, &ElementState::default(), &ZERO, &u);
         let e = 1e-5 * amplitude.sqrt();
         for a in 0..NODES {
             for i in 0..3 {
@@ -44,7 +44,7 @@ fn imbalance(yield_stress: f64, n: usize) -> (f64, f64) {
         hardening: FlowStress::linear(yield_stress, 25.0 * yield_stress).unwrap(),
     };
     let end = plus(&homogeneous(&irregular(), &[[0.02, 0.03, 0.0], [0.0, -0.02, 0.01], [0.01, 0.0, 0.005]]), &wild(3, 5e-3), 1.0);
-    let (mut state, mut committed, mut f, mut work) = (State::default(), ZERO, ZERO, 0.0);
+    let (mut state, mut committed, mut f, mut work) = (ElementState::default(), ZERO, ZERO, 0.0);
     for i in 1..=n {
         let target = end.map(|x| x.map(|x| x * i as f64 / n as f64));
         let increment = plus(&target, &committed, -1.0);

@@ -4,8 +4,8 @@ use super::*;
 use crate::element::hex8::{Invalid, PAIRS, fields, tangent};
 
 /// Every entry point must refuse this displacement.
-fn refused(g: &Geometry<f64>, m: &Material<f64>, u: &Nodal<f64>) -> Vec<Option<Invalid>> {
-    let s = State::default();
+fn refused(g: &ElementGeometry<f64>, m: &Material<f64>, u: &Nodal<f64>) -> Vec<Option<Invalid>> {
+    let s = ElementState::default();
     let mut k = [[0.0; 9]; PAIRS];
     vec![
         internal_force(g, m, &s.points, &ZERO, u).err(),
@@ -42,25 +42,25 @@ fn inverted_collapsed_and_meaningless_deformations_are_refused() {
 
 #[test]
 fn the_same_in_single_precision() {
-    let g = Geometry::<f32>::new(&irregular()).unwrap();
+    let g = ElementGeometry::<f32>::new(&irregular()).unwrap();
     let m = hardening().cast::<f32>();
     let zero = [[0.0_f32; 3]; NODES];
     for x in [f32::NAN, f32::INFINITY, 1e30, -3.0] {
         let mut u = zero;
         u[6] = [x; 3];
-        assert!(internal_force(&g, &m, &State::default().points, &zero, &u).is_err(), "{x}");
+        assert!(internal_force(&g, &m, &ElementState::default().points, &zero, &u).is_err(), "{x}");
     }
 }
 
 #[test]
 fn an_inverted_reference_shape_is_refused_where_it_is_inverted() {
     let mut nodes = irregular();
-    assert!(Geometry::<f64>::new(&nodes).is_ok());
+    assert!(ElementGeometry::<f64>::new(&nodes).is_ok());
     nodes.swap(0, 6);
-    assert!(Geometry::<f64>::new(&nodes).is_err());
+    assert!(ElementGeometry::<f64>::new(&nodes).is_err());
     let mut nodes = irregular();
     nodes[2][0] = f64::NAN;
-    assert!(Geometry::<f64>::new(&nodes).is_err());
+    assert!(ElementGeometry::<f64>::new(&nodes).is_err());
     let flat = irregular().map(|x| [x[0], x[1], 0.0]);
-    assert_eq!(Geometry::<f64>::new(&flat).err(), Some(Invalid::Inverted(0)));
+    assert_eq!(ElementGeometry::<f64>::new(&flat).err(), Some(Invalid::Inverted(0)));
 }

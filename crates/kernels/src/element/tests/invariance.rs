@@ -17,13 +17,13 @@ fn a_rigid_motion_has_no_force() {
     for (angle, t) in [(1e-3, [0.0; 3]), (1.0, [3.0, -2.0, 5.0]), (3.0, [-10.0, 0.3, 0.1])] {
         let u = moved(&nodes, &ZERO, &rotation([1.0, -2.0, 0.5], angle), t);
         for material in [elastic(), hardening()] {
-            let f = force(&g, &material, &State::default(), &ZERO, &u);
+            let f = force(&g, &material, &ElementState::default(), &ZERO, &u);
             assert!(largest(&f) < 1e-14, "angle {angle}: {:e}", largest(&f));
         }
     }
     // A translation loses nothing at all: the gradients sum to zero in each direction up to their
     // rounding.
-    let f = force(&g, &elastic(), &State::default(), &ZERO, &[[0.1, -0.2, 0.3]; NODES]);
+    let f = force(&g, &elastic(), &ElementState::default(), &ZERO, &[[0.1, -0.2, 0.3]; NODES]);
     assert!(largest(&f) < 1e-16, "{:e}", largest(&f));
 }
 
@@ -33,7 +33,7 @@ fn forces_turn_with_a_superposed_rotation() {
     for material in [elastic(), hardening()] {
         let (state, committed) = if material.hardening == FlowStress::Elastic {
             let u = wild(2, 0.1);
-            (update(&g, &material, &State::default(), &State::default().points, &ZERO, &u).unwrap().0, u)
+            (update(&g, &material, &ElementState::default(), &ElementState::default().points, &ZERO, &u).unwrap().0, u)
         } else {
             loaded(&g, &material)
         };

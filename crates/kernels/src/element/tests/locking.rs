@@ -16,7 +16,7 @@ const HALF: f64 = 5.0 * std::f64::consts::PI / 180.0;
 
 /// One quadrature point as an element of its own: its mean dilatation is that of the point. Eight
 /// of them are the displacement element.
-fn points_apart(g: &Geometry<f64>) -> Vec<Geometry<f64>> {
+fn points_apart(g: &ElementGeometry<f64>) -> Vec<ElementGeometry<f64>> {
     (0..QUADRATURE_POINTS)
         .map(|q| {
             let mut alone = g.clone();
@@ -30,8 +30,8 @@ fn points_apart(g: &Geometry<f64>) -> Vec<Geometry<f64>> {
 struct Cylinder {
     material: Material<f64>,
     /// One geometry an element with mean dilatation, eight without.
-    geometry: [Vec<Geometry<f64>>; LAYERS],
-    state: [Vec<State<f64>>; LAYERS],
+    geometry: [Vec<ElementGeometry<f64>>; LAYERS],
+    state: [Vec<ElementState<f64>>; LAYERS],
     /// Committed radial displacement of each ring of nodes.
     q: [f64; 6],
 }
@@ -45,16 +45,16 @@ fn direction(a: usize) -> [f64; 3] {
 
 impl Cylinder {
     fn new(material: Material<f64>, mean_dilatation: bool) -> Self {
-        let geometry: [Vec<Geometry<f64>>; LAYERS] = std::array::from_fn(|e| {
+        let geometry: [Vec<ElementGeometry<f64>>; LAYERS] = std::array::from_fn(|e| {
             let nodes = std::array::from_fn(|a| {
                 let [c, s, _] = direction(a);
                 let r = RADII[e + RING[a]];
                 [r * c, r * s, 0.5 * (1.0 + CORNERS[a][2])]
             });
-            let g = Geometry::new(&nodes).unwrap();
+            let g = ElementGeometry::new(&nodes).unwrap();
             if mean_dilatation { vec![g] } else { points_apart(&g) }
         });
-        let state = std::array::from_fn(|e| vec![State::default(); geometry[e].len()]);
+        let state = std::array::from_fn(|e| vec![ElementState::default(); geometry[e].len()]);
         Self { material, geometry, state, q: [0.0; 6] }
     }
 

@@ -8,7 +8,7 @@ mod patch;
 mod precision;
 mod tangent;
 
-use super::hex8::{CORNERS, Geometry, NODES, Nodal, QUADRATURE_POINTS, State, internal_force, update};
+use super::hex8::{CORNERS, ElementGeometry, ElementState, NODES, Nodal, QUADRATURE_POINTS, internal_force, update};
 use crate::material::hardening::FlowStress;
 use crate::material::multistep::Flow;
 use crate::material::{Elasticity, Material};
@@ -26,8 +26,8 @@ pub fn irregular() -> [[f64; 3]; NODES] {
     CORNERS.map(|c| std::array::from_fn(|i| 0.5 * [1.0, 1.2, 0.9][i] * c[i] + 0.1 * noise.next()))
 }
 
-pub fn geometry() -> Geometry<f64> {
-    Geometry::new(&irregular()).unwrap()
+pub fn geometry() -> ElementGeometry<f64> {
+    ElementGeometry::new(&irregular()).unwrap()
 }
 
 pub fn elastic() -> Material<f64> {
@@ -75,15 +75,21 @@ pub fn largest(f: &Nodal<f64>) -> f64 {
     f.iter().flatten().fold(0.0, |m, x| m.max(x.abs()))
 }
 
-pub fn force(g: &Geometry<f64>, m: &Material<f64>, s: &State<f64>, committed: &Nodal<f64>, increment: &Nodal<f64>) -> Nodal<f64> {
+pub fn force(
+    g: &ElementGeometry<f64>,
+    m: &Material<f64>,
+    s: &ElementState<f64>,
+    committed: &Nodal<f64>,
+    increment: &Nodal<f64>,
+) -> Nodal<f64> {
     internal_force(g, m, &s.points, committed, increment).unwrap()
 }
 
 /// A plastic history: two steps of loading, committed. Returns the state and its displacement.
-pub fn loaded(g: &Geometry<f64>, m: &Material<f64>) -> (State<f64>, Nodal<f64>) {
+pub fn loaded(g: &ElementGeometry<f64>, m: &Material<f64>) -> (ElementState<f64>, Nodal<f64>) {
     let first =
         plus(&homogeneous(&irregular(), &[[0.004, 0.003, 0.0], [0.0, -0.006, 0.002], [0.001, 0.0, 0.003]]), &wild(3, 5e-4), 1.0);
-    let state = update(g, m, &State::default(), &State::default().points, &ZERO, &first).unwrap().0;
+    let state = update(g, m, &ElementState::default(), &ElementState::default().points, &ZERO, &first).unwrap().0;
     let second = plus(
         &homogeneous(&irregular(), &[[0.006, -0.002, 0.001], [0.004, -0.005, 0.0], [0.0, 0.003, 0.001]]),
         &wild(4, 5e-4),
@@ -111,8 +117,8 @@ impl Noise {
 }
 
 /// Rounds a state to another precision.
-pub fn cast_state<R: Real>(s: &State<f64>) -> State<R> {
-    State {
+pub fn cast_state<R: Real>(s: &ElementState<f64>) -> ElementState<R> {
+    ElementState {
         points: std::array::from_fn::<_, QUADRATURE_POINTS, _>(|q| crate::material::PointState {
             be: s.points[q].be.map(R::of),
             alpha: R::of(s.points[q].alpha),

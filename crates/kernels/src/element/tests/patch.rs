@@ -10,8 +10,8 @@ struct Patch {
     nodes: Vec<[f64; 3]>,
     elements: Vec<[u32; 8]>,
     inner: Vec<bool>,
-    geometry: Vec<Geometry<f64>>,
-    state: Vec<State<f64>>,
+    geometry: Vec<ElementGeometry<f64>>,
+    state: Vec<ElementState<f64>>,
     u: Vec<[f64; 3]>,
 }
 
@@ -26,9 +26,9 @@ impl Patch {
             .zip(&inner)
             .map(|(x, &inner)| x.map(|v| v + if inner { 0.1 * noise.next() } else { 0.0 }))
             .collect();
-        let geometry = mesh.elements.iter().map(|e| Geometry::new(&e.map(|n| nodes[n as usize])).unwrap()).collect();
+        let geometry = mesh.elements.iter().map(|e| ElementGeometry::new(&e.map(|n| nodes[n as usize])).unwrap()).collect();
         assert_eq!(inner.iter().filter(|i| **i).count(), 8);
-        let state = vec![State::default(); mesh.elements.len()];
+        let state = vec![ElementState::default(); mesh.elements.len()];
         Self { u: vec![[0.0; 3]; nodes.len()], inner, nodes, elements: mesh.elements, geometry, state }
     }
 

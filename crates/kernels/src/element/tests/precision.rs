@@ -14,20 +14,20 @@ fn double(u: &Nodal<f32>) -> Nodal<f64> {
 
 #[test]
 fn forces_and_tangents_keep_their_digits_in_f32() {
-    let (g64, g32) = (geometry(), Geometry::<f32>::new(&irregular()).unwrap());
+    let (g64, g32) = (geometry(), ElementGeometry::<f32>::new(&irregular()).unwrap());
     for material in [elastic(), hardening()] {
         let m32 = material.cast::<f32>();
         for amplitude in [1e-5, 1e-3, 0.1] {
             let (state, committed) =
-                if material.hardening == FlowStress::Elastic { (State::default(), ZERO) } else { loaded(&g64, &material) };
+                if material.hardening == FlowStress::Elastic { (ElementState::default(), ZERO) } else { loaded(&g64, &material) };
             // The inputs are the rounded ones for both, so that the difference is that of the
             // arithmetic.
             let (state32, committed32) = (cast_state::<f32>(&state), single(&committed));
-            let state64 = State {
+            let state64 = ElementState {
                 points: state32
                     .points
                     .map(|p| crate::material::PointState { be: p.be.map(f64::from), alpha: f64::from(p.alpha) }),
-                ..State::default()
+                ..ElementState::default()
             };
             let committed64 = double(&committed32);
             let increment32 = single(&wild(8, amplitude));

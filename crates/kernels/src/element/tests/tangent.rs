@@ -7,7 +7,13 @@ use crate::material::j2::{self, return_mapping};
 type Full = [[f64; 24]; 24];
 
 /// The whole tangent from its upper triangle of blocks.
-fn full(g: &Geometry<f64>, m: &Material<f64>, s: &State<f64>, committed: &Nodal<f64>, increment: &Nodal<f64>) -> Full {
+fn full(
+    g: &ElementGeometry<f64>,
+    m: &Material<f64>,
+    s: &ElementState<f64>,
+    committed: &Nodal<f64>,
+    increment: &Nodal<f64>,
+) -> Full {
     let mut blocks = [[0.0; 9]; PAIRS];
     tangent(g, m, &s.points, committed, increment, &mut blocks).unwrap();
     let mut k = [[0.0; 24]; 24];
@@ -24,7 +30,13 @@ fn full(g: &Geometry<f64>, m: &Material<f64>, s: &State<f64>, committed: &Nodal<
     k
 }
 
-fn differences(g: &Geometry<f64>, m: &Material<f64>, s: &State<f64>, committed: &Nodal<f64>, increment: &Nodal<f64>) -> Full {
+fn differences(
+    g: &ElementGeometry<f64>,
+    m: &Material<f64>,
+    s: &ElementState<f64>,
+    committed: &Nodal<f64>,
+    increment: &Nodal<f64>,
+) -> Full {
     let e = 1e-6;
     let mut k = [[0.0; 24]; 24];
     for b in 0..24 {
@@ -58,16 +70,16 @@ fn inverse(h: &Matrix) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| minor(j, i) / det))
 }
 
-fn gradient(g: &Geometry<f64>, u: &Nodal<f64>, q: usize) -> Matrix {
+fn gradient(g: &ElementGeometry<f64>, u: &Nodal<f64>, q: usize) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| (0..NODES).map(|a| u[a][i] * g.gradient[a][j].0[q]).sum()))
 }
 
 /// What the symmetrised moduli leave out of the exact tangent: sum_q V grad N_a . C . grad N_b with
 /// C = -mu_bar beta_4 (n (x) dev n^2 - dev n^2 (x) n) (Simo & Hughes 1998, box 9.2).
 fn left_out(
-    g: &Geometry<f64>,
+    g: &ElementGeometry<f64>,
     m: &Material<f64>,
-    s: &State<f64>,
+    s: &ElementState<f64>,
     committed: &Nodal<f64>,
     increment: &Nodal<f64>,
 ) -> (Full, usize) {
@@ -107,14 +119,14 @@ fn the_elastic_tangent_is_the_derivative_of_the_force() {
     let (g, m) = (geometry(), elastic());
     for amplitude in [0.0, 1e-3, 0.2] {
         let u = wild(31, amplitude);
-        let k = full(&g, &m, &State::default(), &ZERO, &u);
-        let error = distance(&k, &differences(&g, &m, &State::default(), &ZERO, &u)) / size(&k);
+        let k = full(&g, &m, &ElementState::default(), &ZERO, &u);
+        let error = distance(&k, &differences(&g, &m, &ElementState::default(), &ZERO, &u)) / size(&k);
         assert!(error < 2e-9, "amplitude {amplitude}: {error:e}");
     }
     // From a committed state the same tangent comes out: only the total deformation counts.
     let (u, part) = (wild(31, 0.1), wild(32, 0.08));
-    let state = update(&g, &m, &State::default(), &State::default().points, &ZERO, &part).unwrap().0;
-    let (whole, split) = (full(&g, &m, &State::default(), &ZERO, &u), full(&g, &m, &state, &part, &plus(&u, &part, -1.0)));
+    let state = update(&g, &m, &ElementState::default(), &ElementState::default().points, &ZERO, &part).unwrap().0;
+    let (whole, split) = (full(&g, &m, &ElementState::default(), &ZERO, &u), full(&g, &m, &state, &part, &plus(&u, &part, -1.0)));
     assert!(distance(&whole, &split) < 1e-14 * size(&whole) * 24.0);
 }
 
@@ -176,10 +188,10 @@ fn the_tangent_is_symmetric() {
     // The nodes in the opposite order (the element turned by 180 degrees about x) exchange the
     // triangles: the blocks that were not formed are the transposes.
     const TURN: [usize; 8] = [7, 6, 5, 4, 3, 2, 1, 0];
-    let turned = Geometry::<f64>::new(&TURN.map(|a| irregular()[a])).unwrap();
+    let turned = ElementGeometry::<f64>::new(&TURN.map(|a| irregular()[a])).unwrap();
     let u = wild(33, 0.1);
-    let k = full(&g, &elastic(), &State::default(), &ZERO, &u);
-    let t = full(&turned, &elastic(), &State::default(), &ZERO, &TURN.map(|a| u[a]));
+    let k = full(&g, &elastic(), &ElementState::default(), &ZERO, &u);
+    let t = full(&turned, &elastic(), &ElementState::default(), &ZERO, &TURN.map(|a| u[a]));
     for (a, &ta) in TURN.iter().enumerate() {
         for (b, &tb) in TURN.iter().enumerate() {
             for i in 0..3 {

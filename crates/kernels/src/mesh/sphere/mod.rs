@@ -11,7 +11,7 @@ mod tests;
 
 use super::connectivity::{node_elements, sweep_order};
 use super::hierarchy::hierarchy;
-use super::{Half, Hanging, Mesh, MeshError};
+use super::{Hanging, Mesh, MeshError, MirrorHalf};
 use geometry::Geometry;
 use layout::Layout;
 pub use layout::{FINE_ZONES, FINEST_SURFACE, FIRST_LAYERS, LARGEST_CONTACT, LARGEST_FINE_RADIUS};
@@ -118,7 +118,7 @@ fn mesh_with(layout: &Layout, finest: &Layout) -> Mesh {
         contact_area,
         contact_size,
         hierarchy: [skin.prolongations(), hierarchy(blocks)].concat(),
-        half: Some(Half { node: half_nodes, hierarchy: [half_levels, hierarchy(blocks.right_half())].concat() }),
+        half: Some(MirrorHalf { node: half_nodes, hierarchy: [half_levels, hierarchy(blocks.right_half())].concat() }),
         fine_radius: layout.fine_radius,
         couple: None,
     }

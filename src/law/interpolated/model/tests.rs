@@ -257,7 +257,9 @@ fn a_contact_whose_ratio_passes_a_peak_at_full_slip_has_slipped() {
         let release = (0..=5).map(|i| [h * (1.0 - 0.1 * share(i)), end.f_n * (1.0 - 2.0 * share(i))]);
         Measured { h, f_n0, a0: 0.1, back: back.collect(), release: release.collect(), curve }
     };
-    let usable = |peak: f64, fall: f64| outputs::outputs(&sphere, mu, &sheared(peak, fall), Against::Plane).is_some();
+    let usable = |peak: f64, fall: f64| {
+        crate::law::interpolated::outputs::outputs(&sphere, mu, &sheared(peak, fall), Against::Plane).is_some()
+    };
     assert!(usable(0.992, 0.005) && !usable(0.985, 0.0));
     // One that falls far has not slid there.
     assert!(!usable(0.992, 0.05));
