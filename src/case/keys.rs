@@ -462,17 +462,17 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: LENGTH,
         range: "-0.5 R to 0.5 R (here R is the smaller of two radii), [x, y] of such lengths, or \"full-slip\"",
-        meaning: "shear to this total delta_T, of either sign. One number is along x. With [x, y] the shear has both \
+        meaning: "shear to this total delta_T, of either sign. One number is along x, and y stays as it is. With [x, y] the shear has both \
                   components, and the hemisphere is meshed instead of its half y >= 0. With \"full-slip\" the shear \
-                  continues until every point slips",
+                  continues until points that stick carry at most 0.2 % of F_N and F_T no longer rises",
         example: "\"full-slip\"",
         ..key("path", "shear", Components(&["full-slip"]), Optional("the segment presses, turns or releases"))
     },
     Key {
         unit: "degrees",
         range: "-360 to 360",
-        meaning: "direction of shear, as an angle from x towards y; shear is then the total displacement in this direction, \
-                  or \"full-slip\"",
+        meaning: "direction of shear, as an angle from x towards y: a length in shear is that of the whole vector delta_T, \
+                  which then points in this direction; \"full-slip\" goes on from where the plate is",
         example: "30.0",
         ..key(
             "path",
