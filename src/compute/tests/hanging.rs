@@ -43,7 +43,7 @@ fn a_uniform_deformation_passes_through_corners_that_hang() {
     assert!(largest(true) < 1e-15 && largest(false) > 1e-4, "{:e} inside, {:e} outside", largest(true), largest(false));
 }
 
-/// TangentBlocks against differences of the forces, at nodes from which corners hang; elastic, as a point
+/// Blocks against differences of the forces, at nodes from which corners hang; elastic, as a point
 /// that begins to yield between the two has neither slope.
 #[test]
 fn the_tangent_is_the_derivative_across_corners_that_hang() {

@@ -4,8 +4,8 @@
 //! A contact is eight dimensionless numbers (`inputs`). What is wanted of it (`outputs`) are six
 //! numbers and two curves, the curves as five `components` each; every one of these is a Gaussian
 //! `process` over the eight. `fit` makes them from a study, and `model` is the law that they are.
-//! [`Interpolated::table`] asks for the depths that `law tabulate` would simulate; what comes out is
-//! a [`super::table::Tabulated`], which update and exports take like one of simulations.
+//! [`Interpolated::table`] asks for the depths that `law tabulate` would simulate; what comes out
+//! is a [`super::table::Tabulated`], which update and exports take like one of simulations.
 
 mod checked;
 mod components;
