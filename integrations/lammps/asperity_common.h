@@ -36,9 +36,11 @@ constexpr int NUMBERS = sizeof(asperity_contact) / sizeof(double);
 static_assert(NUMBERS == 36, "a contact has 36 numbers");
 constexpr int TURNING = sizeof(asperity_turning) / sizeof(double);
 static_assert(TURNING == 61, "a contact that twists and rolls has 61 numbers more");
+constexpr int COHESION = sizeof(asperity_cohesion) / sizeof(double);
+static_assert(COHESION == 7, "a contact with cohesion has 7 numbers more");
 
 // Version of what the plug-in writes to restart files; raised whenever that changes, or what the numbers of a contact mean.
-constexpr double LAYOUT = 4.0;
+constexpr double LAYOUT = 5.0;
 constexpr char MARK[9] = "ASPERITY";
 
 // A law, and what tells it from others.
@@ -47,26 +49,36 @@ struct Law {
   asperity_law3d law;
   std::string file;
   bool changed;    // the user says that a restart file has another
+  double cohesion = 0.0, range = 0.0;    // work of adhesion, and over what distance
 
+  bool coheres() const { return cohesion > 0.0; }
   uint64_t fingerprint() const { return asperity_fingerprint(&table); }
 };
 
-// What a restart file has of a law: fingerprint and Young's modulus; 0 of none.
+// What a restart file has of a law: fingerprint, Young's modulus and cohesion; 0 of none.
 struct Identity {
+  static constexpr int SIZE = 4;
   uint64_t fingerprint = 0;
-  double modulus = 0.0;
+  double modulus = 0.0, cohesion = 0.0, range = 0.0;
 
   Identity() = default;
-  explicit Identity(const Law &law) : fingerprint(law.fingerprint()), modulus(law.law.modulus) {}
+  explicit Identity(const Law &law)
+      : fingerprint(law.fingerprint()), modulus(law.law.modulus), cohesion(law.cohesion), range(law.range)
+  {
+  }
   void pack(double *buf) const
   {
     memcpy(buf, &fingerprint, sizeof fingerprint);
     buf[1] = modulus;
+    buf[2] = cohesion;
+    buf[3] = range;
   }
   void unpack(const double *buf)
   {
     memcpy(&fingerprint, buf, sizeof fingerprint);
     modulus = buf[1];
+    cohesion = buf[2];
+    range = buf[3];
   }
   // Stops if `law` is another one than this, which a restart file has; `what` says of which spheres.
   void hold(LAMMPS *lmp, const Law &law, const std::string &what) const
@@ -78,6 +90,9 @@ struct Identity {
     if (std::abs(law.law.modulus / modulus - 1.0) > 1e-9)
       lmp->error->all(FLERR, "asperity: Young's modulus is {}, and the restart file was written with {}, {}. "
                              "Give that one, or say `changed`", law.law.modulus, modulus, what);
+    if (std::abs(law.cohesion - cohesion) > 1e-9 * cohesion || std::abs(law.range - range) > 1e-9 * range)
+      lmp->error->all(FLERR, "asperity: the cohesion is {} over a range of {}, and the restart file was written with {} over {}, "
+                             "{}. Give that one, or say `changed`", law.cohesion, law.range, cohesion, range, what);
   }
 };
 
@@ -132,7 +147,8 @@ inline void read_table(LAMMPS *lmp, const char *file, asperity_table *table)
     if (line.rfind("# warning: ", 0) == 0) lmp->error->warning(FLERR, "asperity: table {}: {}", file, line.substr(11));
 }
 
-// Takes the words that a law may have behind its table and E: restitution e, tangential f, changed. Returns how many it took.
+// Takes the words that a law may have behind its table and E: restitution e, tangential f,
+// cohesion W, range Z, changed. Returns how many it took.
 inline int law_word(LAMMPS *lmp, Law &law, int narg, char **arg)
 {
   const bool has_value = narg > 1;
@@ -149,11 +165,32 @@ inline int law_word(LAMMPS *lmp, Law &law, int narg, char **arg)
       lmp->error->all(FLERR, "asperity: a tangential damping of {} times the normal one is not 0 or more", arg[1]);
     return 2;
   }
+  if (strcmp(arg[0], "cohesion") == 0 && has_value) {
+    law.cohesion = utils::numeric(FLERR, arg[1], false, lmp);
+    if (!(law.cohesion >= 0.0 && std::isfinite(law.cohesion)))
+      lmp->error->all(FLERR, "asperity: a cohesion of {} is not 0 or more. It is the work of adhesion, energy over area", arg[1]);
+    return 2;
+  }
+  if (strcmp(arg[0], "range") == 0 && has_value) {
+    law.range = utils::numeric(FLERR, arg[1], false, lmp);
+    if (!(law.range >= 0.0 && std::isfinite(law.range)))
+      lmp->error->all(FLERR, "asperity: a range of {} is not 0 or more. It is the distance over which surfaces attract each "
+                             "other", arg[1]);
+    return 2;
+  }
   if (strcmp(arg[0], "changed") == 0) {
     law.changed = true;
     return 1;
   }
   return 0;
+}
+
+// Gives a law the cohesion of its words, once all of them are read.
+inline void set_cohesion(LAMMPS *lmp, Law &law)
+{
+  if (law.range > 0.0 && !law.coheres())
+    lmp->error->all(FLERR, "asperity: a range of {} is of cohesion: say cohesion W before it", law.range);
+  asperity_law_cohesion(&law.law, law.cohesion, law.range);
 }
 
 // A law from its table and E.

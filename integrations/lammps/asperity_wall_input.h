@@ -11,8 +11,8 @@ namespace LAMMPS_NS {
 // What is wrong with a shape, a file or a motion is thrown, as std::runtime_error.
 class WallInput {
   static constexpr const char *USAGE =
-      "fix ID group wall/asperity SHAPE type T TABLE E [restitution e] [tangential f] [changed] [type ...] [velocity vx vy vz] "
-      "[turning yes|no] [spin wx wy wz] [load dx dy dz F mass M [damping C]], SHAPE: x y z nx ny nz | "
+      "fix ID group wall/asperity SHAPE type T TABLE E [restitution e] [tangential f] [cohesion W [range Z]] [changed] "
+      "[type ...] [velocity vx vy vz] [turning yes|no] [spin wx wy wz] [load dx dy dz F mass M [damping C]], SHAPE: x y z nx ny nz | "
       "cylinder x y z ax ay az R inside or outside | cone x1 y1 z1 R1 x2 y2 z2 R2 | "
       "stl FILE [scale s] [shift x y z] [at x y z] [merge DEGREES]";
   static constexpr double MERGE = 15.0, FOLLOWS = 30.0;    // degrees
@@ -185,6 +185,8 @@ class WallInput {
   void read(int narg, char **arg)
   {
     read_words(read_shape(narg, arg), narg, arg);
+    for (const auto &law : laws)
+      if (law) set_cohesion(lmp, *law);
     if (stl) read_mesh();
   }
 };

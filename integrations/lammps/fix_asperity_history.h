@@ -13,12 +13,13 @@ struct Record {
   bool seen;
   asperity_contact contact;
   std::vector<asperity_turning> turning;    // its twist and roll, or none
+  std::vector<asperity_cohesion> cohesion;    // or none
 };
 
 class FixAsperityHistory : public Fix {
  public:
   std::vector<std::vector<Record>> rows;
-  double total[3] = {0.0, 0.0, 0.0};    // work dissipated by plastic flow, slip and damping, this process's share
+  double total[4] = {};    // this process's share of the work dissipated by plastic flow, slip, damping, cohesion
   double **heat = nullptr;              // the same of each sphere, which takes half of what its contacts dissipate
   bool turning = false;                 // whether contacts twist and roll
   std::map<std::pair<int, int>, Identity> laws, restarted;    // by types: those of now, those of the restart file
@@ -32,7 +33,7 @@ class FixAsperityHistory : public Fix {
     maxexchange_dynamic = 1;
     maxexchange = HEAD;
     peratom_flag = 1;
-    size_peratom_cols = 3;
+    size_peratom_cols = 4;
     peratom_freq = 1;
     FixAsperityHistory::grow_arrays(atom->nmax);
     atom->add_callback(Atom::GROW);
@@ -58,13 +59,20 @@ class FixAsperityHistory : public Fix {
   void setup_pre_exchange() override { pre_exchange(); }
   void pre_exchange() override
   {
-    size_t most = 0;
-    for (int i = 0; i < atom->nlocal; i++) most = std::max(most, rows[i].size());
-    maxexchange = HEAD + (numbers() + 1) * static_cast<int>(most);
+    int most = 0;
+    for (int i = 0; i < atom->nlocal; i++) most = std::max(most, numbers(i));
+    maxexchange = most;
   }
 
-  // How many numbers a contact has.
-  int numbers() const { return NUMBERS + (turning ? TURNING : 0); }
+  // How many numbers a sphere has with its contacts: of each the partner, its own, and whether those
+  // of cohesion follow.
+  int numbers(int i) const
+  {
+    int sum = HEAD;
+    for (const Record &record : rows[i])
+      sum += 2 + NUMBERS + (turning ? TURNING : 0) + COHESION * static_cast<int>(record.cohesion.size());
+    return sum;
+  }
 
   // A sphere that was made in this run is known from now on by the ID that it has.
   void know(int i)
@@ -79,17 +87,20 @@ class FixAsperityHistory : public Fix {
     return nullptr;
   }
 
-  // `turned` is NULL of contacts that do not twist and roll.
-  void put(int i, tagint partner, const asperity_contact &contact, const asperity_turning *turned)
+  // `turned` is NULL of contacts that do not twist and roll, `joined` of those without cohesion.
+  void put(int i, tagint partner, const asperity_contact &contact, const asperity_turning *turned,
+           const asperity_cohesion *joined)
   {
     Record *record = find(i, partner);
     if (!record) {
-      rows[i].push_back({partner, true, contact, {}});
+      rows[i].push_back({partner, true, contact, {}, {}});
       record = &rows[i].back();
     }
     record->contact = contact;
     record->seen = true;
     if (turned) record->turning.assign(1, *turned);
+    if (joined) record->cohesion.assign(1, *joined);
+    else record->cohesion.clear();
   }
 
   void drop(int i, tagint partner)
@@ -103,12 +114,12 @@ class FixAsperityHistory : public Fix {
       }
   }
 
-  // What a contact of spheres i and j has dissipated by plastic flow, slip and damping in a step: half of it is of each. Of a
-  // ghost its owner has it too.
-  void add_heat(int i, int j, const double lost[3])
+  // What a contact of spheres i and j has dissipated by plastic flow, slip, damping and cohesion in a
+  // step: half of it is of each. Of a ghost its owner has it too.
+  void add_heat(int i, int j, const double lost[4])
   {
     const double weight = j < atom->nlocal ? 1.0 : 0.5;
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
       total[k] += weight * lost[k];
       heat[i][k] += 0.5 * lost[k];
       if (j < atom->nlocal) heat[j][k] += 0.5 * lost[k];
@@ -124,7 +135,7 @@ class FixAsperityHistory : public Fix {
 
   void grow_arrays(int nmax) override
   {
-    memory->grow(heat, nmax, 3, "asperity:heat");
+    memory->grow(heat, nmax, 4, "asperity:heat");
     array_atom = heat;
     if (rows.size() >= static_cast<size_t>(nmax)) return;
     rows.resize(nmax);
@@ -134,13 +145,13 @@ class FixAsperityHistory : public Fix {
   {
     rows[j] = rows[i];
     known_as[j] = known_as[i];
-    std::copy(heat[i], heat[i] + 3, heat[j]);
+    std::copy(heat[i], heat[i] + 4, heat[j]);
   }
   void set_arrays(int i) override
   {
     rows[i].clear();
     known_as[i] = 0;
-    std::fill(heat[i], heat[i] + 3, 0.0);
+    std::fill(heat[i], heat[i] + 4, 0.0);
   }
 
   int pack_exchange(int i, double *buf) override
@@ -150,7 +161,7 @@ class FixAsperityHistory : public Fix {
     return m;
   }
   int unpack_exchange(int i, double *buf) override { return unpack(i, buf); }
-  int size_restart(int i) override { return 1 + HEAD + (numbers() + 1) * static_cast<int>(rows[i].size()); }
+  int size_restart(int i) override { return 1 + numbers(i); }
   int maxsize_restart() override
   {
     int most = 0, all;
@@ -175,36 +186,36 @@ class FixAsperityHistory : public Fix {
 
   void write_restart(FILE *fp) override
   {
-    double sum[3];
-    MPI_Allreduce(total, sum, 3, MPI_DOUBLE, MPI_SUM, world);
+    double sum[4];
+    MPI_Allreduce(total, sum, 4, MPI_DOUBLE, MPI_SUM, world);
     if (comm->me != 0) return;
     std::vector<double> buf;
     begin_layout(buf, turning);
-    buf.insert(buf.end(), sum, sum + 3);
+    buf.insert(buf.end(), sum, sum + 4);
     buf.push_back(static_cast<double>(laws.size()));
     for (const auto &[types, law] : laws) {
-      double packed[2];
+      double packed[Identity::SIZE];
       law.pack(packed);
-      for (const double number : {static_cast<double>(types.first), static_cast<double>(types.second), packed[0], packed[1]})
-        buf.push_back(number);
+      for (const int type : {types.first, types.second}) buf.push_back(static_cast<double>(type));
+      buf.insert(buf.end(), packed, packed + Identity::SIZE);
     }
     write_buffer(fp, buf);
   }
   void restart(char *buf) override
   {
     require_layout(lmp, buf, "pair_style asperity", turning);
-    double head[7];
+    double head[8];
     memcpy(head, buf, sizeof head);
-    if (comm->me == 0) std::copy(head + 3, head + 6, total);
-    for (int k = 0; k < static_cast<int>(head[6]); k++) {
-      double numbers[4];
+    if (comm->me == 0) std::copy(head + 3, head + 7, total);
+    for (int k = 0; k < static_cast<int>(head[7]); k++) {
+      double numbers[2 + Identity::SIZE];
       memcpy(numbers, buf + sizeof head + k * sizeof numbers, sizeof numbers);
       restarted[{static_cast<int>(numbers[0]), static_cast<int>(numbers[1])}].unpack(numbers + 2);
     }
   }
 
  private:
-  static constexpr int HEAD = 5;    // numbers of a sphere before those of its contacts
+  static constexpr int HEAD = 6;    // numbers of a sphere before those of its contacts
   std::vector<tagint> known_as;    // the ID by which the contacts of others know an owned sphere; 0 of a new one
   bigint spheres = -1;             // how many there were when the IDs were last looked at
 
@@ -213,16 +224,22 @@ class FixAsperityHistory : public Fix {
     int m = 0;
     buf[m++] = static_cast<double>(rows[i].size());
     buf[m++] = ubuf(known_as[i]).d;
-    for (int k = 0; k < 3; k++) buf[m++] = heat[i][k];
+    for (int k = 0; k < 4; k++) buf[m++] = heat[i][k];
     for (const auto &record : rows[i]) {
       buf[m++] = ubuf(record.partner).d;
       memcpy(buf + m, &record.contact, sizeof record.contact);
       m += NUMBERS;
-      if (!turning) continue;
-      asperity_turning turned = {};
-      if (!record.turning.empty()) turned = record.turning[0];
-      memcpy(buf + m, &turned, sizeof turned);
-      m += TURNING;
+      if (turning) {
+        asperity_turning turned = {};
+        if (!record.turning.empty()) turned = record.turning[0];
+        memcpy(buf + m, &turned, sizeof turned);
+        m += TURNING;
+      }
+      buf[m++] = static_cast<double>(record.cohesion.size());
+      for (const asperity_cohesion &joined : record.cohesion) {
+        memcpy(buf + m, &joined, sizeof joined);
+        m += COHESION;
+      }
     }
     return m;
   }
@@ -231,7 +248,7 @@ class FixAsperityHistory : public Fix {
     int m = 0;
     const int count = static_cast<int>(buf[m++]);
     known_as[i] = static_cast<tagint>(ubuf(buf[m++]).i);
-    for (int k = 0; k < 3; k++) heat[i][k] = buf[m++];
+    for (int k = 0; k < 4; k++) heat[i][k] = buf[m++];
     rows[i].clear();
     for (int k = 0; k < count; k++) {
       Record record;
@@ -243,6 +260,11 @@ class FixAsperityHistory : public Fix {
         record.turning.resize(1);
         memcpy(record.turning.data(), buf + m, sizeof(asperity_turning));
         m += TURNING;
+      }
+      record.cohesion.resize(buf[m++] > 0.0 ? 1 : 0);
+      for (asperity_cohesion &joined : record.cohesion) {
+        memcpy(&joined, buf + m, sizeof joined);
+        m += COHESION;
       }
       rows[i].push_back(record);
     }
@@ -275,6 +297,7 @@ class FixAsperityHistory : public Fix {
         if (was_first != is_first) {
           asperity_exchange(&record.contact);
           for (asperity_turning &turned : record.turning) asperity_exchange_turning(&turned);
+          for (asperity_cohesion &joined : record.cohesion) asperity_exchange_cohesion(&joined);
         }
         record.partner = at->second;
         k++;

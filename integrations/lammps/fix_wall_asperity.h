@@ -11,7 +11,7 @@
 namespace LAMMPS_NS {
 
 class FixWallAsperity : public Fix {
-  static constexpr int LENGTH = 19, SUMS = 12, COLUMNS = 9, HEAT = 6;
+  static constexpr int LENGTH = 20, SUMS = 12, COLUMNS = 10, HEAT = 6, LOST = 4;
 
   // A contact as its sphere holds it.
   struct Record {
@@ -19,6 +19,7 @@ class FixWallAsperity : public Fix {
     double stored;       // elastic energy
     asperity_contact contact;
     asperity_turning turning;    // its twist and roll; zero where they are left out
+    asperity_cohesion cohesion;    // zero without it
   };
   static constexpr int RECORD = sizeof(Record) / sizeof(double);
   std::vector<std::shared_ptr<Law>> laws;
@@ -30,10 +31,14 @@ class FixWallAsperity : public Fix {
   // Sums of this process: force on the wall, work dissipated by plastic flow, slip and damping, elastic energy, contacts, those
   // out of range, torque; and the work that the wall has done.
   double sum[SUMS] = {}, all[SUMS] = {}, done = 0.0, before[6] = {};
+  double parted = 0.0;    // work that cohesion has dissipated
   double margin = 0.0, home[3] = {}, spanned[7] = {};
   double least_cosine = -1.0;    // of the old and the new normal of a contact
   int extensive[LENGTH];
-  double **peratom = nullptr;    // from HEAT on: work dissipated in a sphere by plastic flow, slip and damping at this wall
+  // From HEAT on: work dissipated in a sphere by plastic flow, slip, damping and cohesion at this wall.
+  double **peratom = nullptr;
+  // Of each type: over what gap cohesion may hold it, and the radius for which that is.
+  std::vector<double> gaps, radii;
   bool known = false, turning = false;    // turning: whether contacts twist and roll
   // Of the sphere in hand: where it touches, which of its records that has, and its new ones.
   std::vector<Touch> found;
@@ -71,13 +76,13 @@ class FixWallAsperity : public Fix {
     restart_global = 1;
     create_attribute = 1;
     maxexchange_dynamic = 1;
-    maxexchange = 4;
+    maxexchange = 1 + LOST;
     vector_flag = 1;
     size_vector = LENGTH;
     global_freq = 1;
     // Sums are extensive, as those of LAMMPS' own walls: thermo output divides them by the number of atoms where it is told to
     // normalise (thermo_modify norm yes, the default of units lj). The wall's place and velocity are none.
-    for (int k = 0; k < LENGTH; k++) extensive[k] = k < 3 || (k >= 6 && k < 16);
+    for (int k = 0; k < LENGTH; k++) extensive[k] = k < 3 || (k >= 6 && k < 16) || k == 19;
     extvector = -1;
     extlist = extensive;
     peratom_flag = 1;
@@ -112,6 +117,10 @@ class FixWallAsperity : public Fix {
     for (int t = 1; t <= atom->ntypes; t++)
       if (there[t] && !laws[t])
         error->all(FLERR, "fix wall/asperity {}: there is no table for spheres of type {}: type {} TABLE E", id, t, t);
+    radii = greatest_radii(lmp);
+    gaps.assign(atom->ntypes + 1, 0.0);
+    for (int t = 1; t <= atom->ntypes; t++)
+      if (laws[t] && laws[t]->coheres() && radii[t] > 0.0) gaps[t] = 1.05 * asperity_holding_gap(&laws[t]->law, radii[t], 0.0);
     if (!shape->is_plane()) fit_box();
   }
 
@@ -121,7 +130,7 @@ class FixWallAsperity : public Fix {
   {
     size_t most = 0;
     for (int i = 0; i < atom->nlocal; i++) most = std::max(most, kept[i].size());
-    maxexchange = 4 + RECORD * static_cast<int>(most);
+    maxexchange = 1 + LOST + RECORD * static_cast<int>(most);
   }
 
   // Whether the wall makes sense in a box that is periodic, and its images there.
@@ -267,14 +276,29 @@ class FixWallAsperity : public Fix {
     }
   }
 
+  // Over what distance sphere i is attracted before it touches, and over what gap it may be held,
+  // which grows by less than the radius.
+  double range(int i) const
+  {
+    const auto &law = laws[atom->type[i]];
+    return law ? law->range : 0.0;
+  }
+  double gap(int i) const
+  {
+    const int type = atom->type[i];
+    const double known = radii[type] > 0.0 ? radii[type] : atom->radius[i];
+    if (!(gaps[type] > 0.0)) return range(i);
+    return gaps[type] * std::max(1.0, atom->radius[i] / known);
+  }
+
   void sphere(int i, double dt, bool advance)
   {
     std::vector<Record> &mine = kept[i];
-    const double radius = atom->radius[i];
-    if (mine.empty() && is_far(i, radius)) return;
+    const double radius = atom->radius[i], meets = radius + range(i);
+    if (mine.empty() && is_far(i, meets)) return;
     double deepest = 0.0, place[3];
     for (const Record &record : mine) deepest = std::max(deepest, record.contact.state.h_max);
-    const double reach = radius * (1.0 + deepest);
+    const double reach = std::max(radius * (1.0 + deepest), radius + gap(i));
     if (mesh && margin > 0.0 && reach > margin)
       error->one(FLERR, "fix wall/asperity {}: sphere {} has the radius {}, and none as large was known when the run began", id,
                  atom->tag[i], radius);
@@ -285,11 +309,11 @@ class FixWallAsperity : public Fix {
     for (size_t t = 0; t < found.size(); t++) {
       Record record = {};
       if (owner[t] >= 0) record = mine[owner[t]];
-      else if (found[t].distance >= radius) continue;
+      else if (found[t].distance >= meets) continue;
       // Memory goes by the direction in the frame of the wall, forces by that of the box.
       std::copy(found[t].normal, found[t].normal + 3, record.normal);
       contact(i, place, found[t], dt, advance, record);
-      if (!asperity_may_forget(&record.contact)) after.push_back(record);
+      if (!asperity_may_forget_cohesive(&record.contact, &record.cohesion)) after.push_back(record);
     }
     if (!advance) return;
     for (size_t r = 0; r < mine.size(); r++)
@@ -303,6 +327,11 @@ class FixWallAsperity : public Fix {
     for (const Record &other : after)
       if (record.contact.state.h > 0.0 && asperity_dot(record.normal, other.normal) < -0.9)
         error->one(FLERR, "fix wall/asperity {}: sphere {} has gone through the wall", id, atom->tag[i]);
+    if (record.cohesion.joined > 0.0) {
+      peratom[i][HEAT + 3] += record.stored;
+      parted += record.stored;
+      return;
+    }
     peratom[i][HEAT + 2] += record.stored;
     sum[5] += record.stored;
   }
@@ -335,7 +364,9 @@ class FixWallAsperity : public Fix {
     for (int k = 0; k < 3; k++) wall.velocity[k] = motion.velocity[k] + turning[k];
     asperity_turning turned = record.turning;
     asperity_turning *memory = this->turning ? &turned : nullptr;
-    asperity_sphere_wall_turning(&laws[type]->law, &body, &wall, dt, &record.contact, &after, memory, memory, &out);
+    asperity_cohesion joined = record.cohesion;
+    asperity_cohesion *held = laws[type]->coheres() ? &joined : nullptr;
+    asperity_sphere_wall_cohesive(&laws[type]->law, &body, &wall, dt, &record.contact, &after, memory, memory, held, held, &out);
     if (out.flags & ASPERITY_NO_NUMBER)
       error->one(FLERR, "fix wall/asperity {}: there is no force on sphere {}: its place, its velocity or the memory of the "
                         "contact is no number", id, atom->tag[i]);
@@ -352,6 +383,7 @@ class FixWallAsperity : public Fix {
     add_up(i, record, after, out, advance);
     record.contact = after;
     record.turning = turned;
+    record.cohesion = joined;
     record.stored = out.stored;
   }
 
@@ -362,11 +394,11 @@ class FixWallAsperity : public Fix {
     sum[7] += (out.flags & ASPERITY_TOUCHES) ? 1.0 : 0.0;
     sum[8] += outside;
     if (advance) {
-      const double lost[3] = {after.plastic - record.contact.plastic, after.slip - record.contact.slip, out.damped};
-      for (int k = 0; k < 3; k++) {
-        sum[3 + k] += lost[k];
-        peratom[i][HEAT + k] += lost[k];
-      }
+      const asperity_contact &was = record.contact;
+      const double lost[LOST] = {after.plastic - was.plastic, after.slip - was.slip, out.damped, out.parted};
+      for (int k = 0; k < LOST; k++) peratom[i][HEAT + k] += lost[k];
+      for (int k = 0; k < 3; k++) sum[3 + k] += lost[k];
+      parted += lost[3];
     }
     double *row = peratom[i];
     row[0] += out.f_n;
@@ -399,16 +431,16 @@ class FixWallAsperity : public Fix {
 
   // 1 to 3: force on the wall; 4 to 6: its place; 7, 8, 9: work dissipated by plastic flow, slip and damping; 10: elastic energy;
   // 11: contacts; 12: those out of range; 13: work that the wall has done; 14 to 16: torque on the wall about its place; 17 to
-  // 19: its velocity
+  // 19: its velocity; 20: work dissipated by cohesion
   double compute_vector(int k) override
   {
     if (k < 3) return value(k);
     if (k < 6) return motion.place[k - 3];
     if (k < 12) return value(k - 3);
-    if (k >= 16) return motion.velocity[k - 16];
-    if (k >= 13) return value(k - 4);
+    if (k >= 16 && k < 19) return motion.velocity[k - 16];
+    if (k >= 13 && k < 16) return value(k - 4);
     double total;
-    MPI_Allreduce(&done, &total, 1, MPI_DOUBLE, MPI_SUM, world);
+    MPI_Allreduce(k == 19 ? &parted : &done, &total, 1, MPI_DOUBLE, MPI_SUM, world);
     return total;
   }
 
@@ -443,23 +475,23 @@ class FixWallAsperity : public Fix {
   {
     const auto &records = kept[i];
     buf[0] = static_cast<double>(records.size());
-    std::copy(peratom[i] + HEAT, peratom[i] + HEAT + 3, buf + 1);
-    if (!records.empty()) memcpy(buf + 4, records.data(), records.size() * sizeof(Record));
-    return 4 + RECORD * static_cast<int>(records.size());
+    std::copy(peratom[i] + HEAT, peratom[i] + HEAT + LOST, buf + 1);
+    if (!records.empty()) memcpy(buf + 1 + LOST, records.data(), records.size() * sizeof(Record));
+    return 1 + LOST + RECORD * static_cast<int>(records.size());
   }
   int unpack_exchange(int i, double *buf) override
   {
     set_arrays(i);
     const auto count = static_cast<size_t>(buf[0]);
-    std::copy(buf + 1, buf + 4, peratom[i] + HEAT);
+    std::copy(buf + 1, buf + 1 + LOST, peratom[i] + HEAT);
     kept[i].resize(count);
-    if (count > 0) memcpy(kept[i].data(), buf + 4, count * sizeof(Record));
-    return 4 + RECORD * static_cast<int>(count);
+    if (count > 0) memcpy(kept[i].data(), buf + 1 + LOST, count * sizeof(Record));
+    return 1 + LOST + RECORD * static_cast<int>(count);
   }
-  int size_restart(int i) override { return 5 + RECORD * static_cast<int>(kept[i].size()); }
+  int size_restart(int i) override { return 2 + LOST + RECORD * static_cast<int>(kept[i].size()); }
   int maxsize_restart() override
   {
-    int most = 5, all_most;
+    int most = 2 + LOST, all_most;
     for (int i = 0; i < atom->nlocal; i++) most = std::max(most, size_restart(i));
     MPI_Allreduce(&most, &all_most, 1, MPI_INT, MPI_MAX, world);
     return all_most;
@@ -482,51 +514,52 @@ class FixWallAsperity : public Fix {
   // The wall's place, what its contacts have dissipated, its turn, velocity and shape, and its laws.
   void write_restart(FILE *fp) override
   {
-    double mine[4] = {sum[3], sum[4], sum[5], done}, total[4], hash;
-    MPI_Allreduce(mine, total, 4, MPI_DOUBLE, MPI_SUM, world);
+    double mine[5] = {sum[3], sum[4], sum[5], done, parted}, total[5], hash;
+    MPI_Allreduce(mine, total, 5, MPI_DOUBLE, MPI_SUM, world);
     if (comm->me != 0) return;
     std::vector<double> buf;
     begin_layout(buf, turning);
     buf.insert(buf.end(), motion.place, motion.place + 3);
-    buf.insert(buf.end(), total, total + 4);
+    buf.insert(buf.end(), total, total + 5);
     buf.insert(buf.end(), motion.turn, motion.turn + 4);
     buf.insert(buf.end(), motion.velocity, motion.velocity + 3);
     const uint64_t fingerprint = shape->fingerprint();
     memcpy(&hash, &fingerprint, sizeof hash);
     buf.push_back(hash);
     for (int type = 1; type <= atom->ntypes; type++) {
-      double packed[2];
+      double packed[Identity::SIZE];
       (laws[type] ? Identity(*laws[type]) : Identity()).pack(packed);
-      buf.insert(buf.end(), packed, packed + 2);
+      buf.insert(buf.end(), packed, packed + Identity::SIZE);
     }
     write_buffer(fp, buf);
   }
   // A wall under a load goes on with its velocity; that of another is the input's.
   void restart(char *buf) override
   {
-    constexpr int LAWS = 18;
+    constexpr int LAWS = 19;
     const std::string who = std::string("fix wall/asperity ") + id;
     require_layout(lmp, buf, who.c_str(), turning);
-    std::vector<double> file(LAWS + 2 * atom->ntypes);
+    std::vector<double> file(LAWS + Identity::SIZE * atom->ntypes);
     memcpy(file.data(), buf, file.size() * sizeof(double));
     bool changed = false;
     for (int type = 1; type <= atom->ntypes; type++) {
       Identity earlier;
-      earlier.unpack(file.data() + LAWS + 2 * (type - 1));
+      earlier.unpack(file.data() + LAWS + Identity::SIZE * (type - 1));
       if (!laws[type]) continue;
       earlier.hold(lmp, *laws[type], "in " + who + " for type " + std::to_string(type));
       changed = changed || laws[type]->changed;
     }
     const uint64_t fingerprint = shape->fingerprint();
-    if (memcmp(&fingerprint, &file[17], sizeof fingerprint) != 0 && !changed)
+    if (memcmp(&fingerprint, &file[18], sizeof fingerprint) != 0 && !changed)
       error->all(FLERR, "{}: the wall has another shape than when the restart file was written. Give that one, or say `changed`",
                  who);
     std::copy(file.begin() + 3, file.begin() + 6, motion.place);
-    std::copy(file.begin() + 10, file.begin() + 14, motion.turn);
-    if (motion.loaded) std::copy(file.begin() + 14, file.begin() + 17, motion.velocity);
+    std::copy(file.begin() + 11, file.begin() + 15, motion.turn);
+    if (motion.loaded) std::copy(file.begin() + 15, file.begin() + 18, motion.velocity);
     if (comm->me != 0) return;
     std::copy(file.begin() + 6, file.begin() + 9, sum + 3);
     done = file[9];
+    parted = file[10];
   }
 };
 

@@ -8,11 +8,13 @@ namespace LAMMPS_NS {
 
 class PairAsperity : public Pair {
   static constexpr const char *HISTORY = "ASPERITY_HISTORY";
-  static constexpr const char *COEFF = "pair_coeff I J TABLE E [restitution e] [tangential f] [plane-for-pair] [changed]";
+  static constexpr const char *COEFF =
+      "pair_coeff I J TABLE E [restitution e] [tangential f] [cohesion W [range Z]] [plane-for-pair] [changed]";
   std::vector<std::vector<std::shared_ptr<Law>>> laws;
   FixAsperityHistory *history = nullptr;
   Masses masses;
   bool turning = false;           // whether contacts twist and roll
+  bool cohesive = false, ranged = false;    // whether some have cohesion, and such as reaches over a gap
   double largest = 0.0;           // greatest radius that the user promises
   std::vector<double> radii;      // greatest radius of each type that the cutoffs are made for
 
@@ -30,14 +32,16 @@ class PairAsperity : public Pair {
   // The forces of i and j from a memory; particles in the order of their IDs, so that no exchange ever turns the memory round.
   // Whether i is the first of the two.
   bool forces(int i, int j, double dt, const asperity_contact &before, asperity_contact &after, asperity_turning &turned,
-              asperity_forces &out)
+              asperity_cohesion &joined, asperity_forces &out)
   {
     asperity_body a, b;
     const bool first = atom->tag[i] < atom->tag[j];
     fill(a, atom, masses, first ? i : j);
     fill(b, atom, masses, first ? j : i);
     asperity_turning *memory = turning ? &turned : nullptr;
-    asperity_spheres_turning(&laws[atom->type[i]][atom->type[j]]->law, &a, &b, dt, &before, &after, memory, memory, &out);
+    const Law &law = *laws[atom->type[i]][atom->type[j]];
+    asperity_cohesion *held = law.coheres() ? &joined : nullptr;
+    asperity_spheres_cohesive(&law.law, &a, &b, dt, &before, &after, memory, memory, held, held, &out);
     if (out.flags & ASPERITY_NO_NUMBER)
       error->one(FLERR, "pair_style asperity: there is no force between spheres {} and {}: their centres coincide, or a place, "
                         "a velocity or the memory of the contact is no number", atom->tag[i], atom->tag[j]);
@@ -61,10 +65,12 @@ class PairAsperity : public Pair {
     const int nlocal = atom->nlocal;
     asperity_contact after, before = {};
     asperity_turning turned = {};
+    asperity_cohesion joined = {};
     asperity_forces out;
     if (record) before = record->contact;
     if (record && turning && !record->turning.empty()) turned = record->turning[0];
-    const bool first = forces(i, j, dt, before, after, turned, out);
+    if (record && !record->cohesion.empty()) joined = record->cohesion[0];
+    const bool first = forces(i, j, dt, before, after, turned, joined, out);
     const double *fi = first ? out.force_i : out.force_j, *ti = first ? out.torque_i : out.torque_j;
     const double *tj = first ? out.torque_j : out.torque_i;
     for (int k = 0; k < 3; k++) {
@@ -77,14 +83,15 @@ class PairAsperity : public Pair {
     }
     if (out.flags & ASPERITY_OUT_OF_RANGE) outside += j < nlocal ? 1.0 : 0.5;
     if (advance) {
-      const double lost[3] = {after.plastic - before.plastic, after.slip - before.slip, out.damped};
+      const double lost[4] = {after.plastic - before.plastic, after.slip - before.slip, out.damped, out.parted};
+      const asperity_cohesion *held = laws[atom->type[i]][atom->type[j]]->coheres() ? &joined : nullptr;
       history->add_heat(i, j, lost);
-      if (asperity_may_forget(&after)) {
+      if (asperity_may_forget_cohesive(&after, &joined)) {
         history->drop(i, tag[j]);
         if (j < nlocal) history->drop(j, tag[i]);
       } else {
-        history->put(i, tag[j], after, turning ? &turned : nullptr);
-        if (j < nlocal) history->put(j, tag[i], after, turning ? &turned : nullptr);
+        history->put(i, tag[j], after, turning ? &turned : nullptr, held);
+        if (j < nlocal) history->put(j, tag[i], after, turning ? &turned : nullptr, held);
       }
     } else if (record && j < nlocal) {
       if (Record *other = history->find(j, tag[i])) other->seen = true;
@@ -98,14 +105,14 @@ class PairAsperity : public Pair {
   PairAsperity(LAMMPS *lmp) : Pair(lmp), masses(lmp)
   {
     single_enable = 1;
-    single_extra = 10;
+    single_extra = 11;
     svector = new double[single_extra];
     restartinfo = 0;
     no_virial_fdotr_compute = 1;    // ghosts get no force here
     finitecutflag = 1;
     centroidstressflag = CENTROID_NOTAVAIL;
     comm_forward = 1;
-    nextra = 4;
+    nextra = 5;
     pvector = new double[nextra]();
   }
 
@@ -178,6 +185,7 @@ class PairAsperity : public Pair {
                        arg[2], arg[0], arg[1]);
       asperity_stand_in(&law->table);
     }
+    set_cohesion(lmp, *law);
     for (int i = ilo; i <= ihi; i++)
       for (int j = jlo; j <= jhi; j++) {
         laws[i][j] = laws[j][i] = law;
@@ -192,8 +200,17 @@ class PairAsperity : public Pair {
     if (turning && force->pair_match("^gran", 0))
       error->all(FLERR, "pair_style asperity turning yes: beside a granular pair style twist and roll would count twice");
     if (!comm->ghost_velocity) error->all(FLERR, "pair_style asperity needs: comm_modify vel yes");
+    cohesive = ranged = false;
+    for (int i = 1; i <= atom->ntypes; i++)
+      for (int j = i; j <= atom->ntypes; j++) {
+        if (!setflag[i][j]) continue;
+        cohesive = cohesive || laws[i][j]->coheres();
+        ranged = ranged || laws[i][j]->range > 0.0;
+      }
     // Both owners of a pair across a boundary compute it, from their own copies of the memory, whatever `newton` is.
-    neighbor->add_request(this, NeighConst::REQ_SIZE | NeighConst::REQ_NEWTON_OFF);
+    // Lists by size end at the sum of the radii; surfaces that hold each other may be further apart, and
+    // the cutoffs of init_one() count.
+    neighbor->add_request(this, cohesive ? NeighConst::REQ_NEWTON_OFF : NeighConst::REQ_SIZE | NeighConst::REQ_NEWTON_OFF);
     masses.init();
     radii = greatest_radii(lmp);
     for (double &radius : radii) radius = std::max(radius, largest);
@@ -212,7 +229,9 @@ class PairAsperity : public Pair {
   {
     if (!setflag[std::min(i, j)][std::max(i, j)])
       error->all(FLERR, "asperity: there is no table for spheres of types {} and {}: pair_coeff {} {} TABLE E", i, j, i, j);
-    return radii[i] + radii[j];
+    const Law &law = *laws[i][j];
+    const bool holds = law.coheres() && radii[i] > 0.0 && radii[j] > 0.0;
+    return radii[i] + radii[j] + (holds ? 1.05 * asperity_holding_gap(&law.law, radii[i], radii[j]) : 0.0);
   }
 
   int pack_forward_comm(int n, int *list, double *buf, int, int *) override
@@ -247,7 +266,9 @@ class PairAsperity : public Pair {
       const bool has = !history->rows[i].empty();
       for (int jj = 0; jj < list->numneigh[i]; jj++) {
         const int j = neighbours[jj] & NEIGHMASK;
-        const double dx = x[i][0] - x[j][0], dy = x[i][1] - x[j][1], dz = x[i][2] - x[j][2], sum = radius[i] + radius[j];
+        const double dx = x[i][0] - x[j][0], dy = x[i][1] - x[j][1], dz = x[i][2] - x[j][2];
+        double sum = radius[i] + radius[j];
+        if (ranged) sum += laws[atom->type[i]][atom->type[j]]->range;
         const bool apart = dx * dx + dy * dy + dz * dz >= sum * sum;
         if (apart && !has && history->rows[i].empty()) continue;
         Record *record = history->find(i, atom->tag[j]);
@@ -261,23 +282,26 @@ class PairAsperity : public Pair {
       for (int i = 0; i < nlocal; i++) history->drop_unseen(i);
     for (int k = 0; k < 3; k++) pvector[k] = history->total[k];
     pvector[3] = outside;
+    pvector[4] = history->total[3];
   }
 
   // compute pair/local: p1 F_N, p2 F_T, p3 overlap, p4 elastic energy, p5 and p6 work dissipated by plastic flow and by slip,
-  // p7 out of range, p8 to p10 force on the first.
+  // p7 out of range, p8 to p10 force on the first, p11 whether cohesion holds it.
   double single(int i, int j, int, int, double rsq, double, double, double &fforce) override
   {
     for (int k = 0; k < single_extra; k++) svector[k] = 0.0;
     fforce = 0.0;
-    const double sum = atom->radius[i] + atom->radius[j];
+    const double sum = atom->radius[i] + atom->radius[j] + laws[atom->type[i]][atom->type[j]]->range;
     Record *record = i < atom->nlocal ? history->find(i, atom->tag[j]) : history->find(j, atom->tag[i]);
     if (!record && rsq >= sum * sum) return 0.0;
     asperity_contact after, before = {};
     asperity_turning turned = {};
+    asperity_cohesion joined = {};
     asperity_forces out;
     if (record) before = record->contact;
     if (record && turning && !record->turning.empty()) turned = record->turning[0];
-    const bool first = forces(i, j, 0.0, before, after, turned, out);
+    if (record && !record->cohesion.empty()) joined = record->cohesion[0];
+    const bool first = forces(i, j, 0.0, before, after, turned, joined, out);
     svector[0] = out.f_n;
     svector[1] = out.f_t;
     svector[2] = out.overlap;
@@ -286,6 +310,7 @@ class PairAsperity : public Pair {
     svector[5] = after.slip;
     svector[6] = (out.flags & ASPERITY_OUT_OF_RANGE) ? 1.0 : 0.0;
     for (int k = 0; k < 3; k++) svector[7 + k] = first ? out.force_i[k] : out.force_j[k];
+    svector[10] = (out.flags & ASPERITY_HOLDS) ? 1.0 : 0.0;
     fforce = out.f_n / sqrt(rsq);
     return out.stored;
   }

@@ -39,7 +39,7 @@ echo "built $work/asperityplugin.so for LAMMPS of $version"
 [ "${1:-}" != --build ] || exit 0
 gcc -std=c99 -O2 -shared -fPIC -I"$work/law-copper" "$here/tests/bare.c" -o "$work/libbare.so" -lm
 "$work/venv/bin/python" "$here/tests/test_plugin.py" "$work/asperityplugin.so" "$work/libbare.so" "$work/law-copper/law.asperity" "$work/law-steel/law.asperity" "$@"
-for name in starts walls presses turning; do
+for name in starts walls presses turning cohesion; do
     "$work/venv/bin/python" "$here/tests/test_$name.py" "$work/asperityplugin.so" "$work/equal" "$work/elastic"
 done
 # Dense compaction: 16 spheres to a relative density of 0.95.

@@ -174,6 +174,7 @@ fn purpose(file: &str) -> &'static str {
     match file {
         "asperity_contact.h" => "the update of one contact",
         "asperity_turning.h" => "twist and roll of one contact",
+        "asperity_cohesion.h" => "cohesion of one contact",
         "asperity_contact3d.h" => "two spheres, or a sphere and a wall, in three dimensions",
         "asperity_law.h" | "asperity_law.py" => "the law",
         "law.asperity" => "the law, to be read when an engine starts",

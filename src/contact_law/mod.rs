@@ -24,7 +24,7 @@
 //!   given.
 //!
 //! [`ContactParameters::update_turning`] twists and rolls the contact besides; what that adds is in
-//! `turning`.
+//! `turning`. [`ContactParameters::cohere`] adds the attraction of the surfaces: `cohesion`.
 //!
 //! A step solves F_N G = rho P and F_T = r F_N for the hardening and r by Newton's method with
 //! exact slopes; where that does not find the root it is bracketed in the hardening.
@@ -34,6 +34,7 @@ pub mod export;
 pub mod path;
 
 mod centres;
+mod cohesion;
 mod constants;
 mod parameters;
 mod prepare;
@@ -48,6 +49,7 @@ mod update;
 mod virgin;
 
 pub use centres::{Centres, Frame};
+pub use cohesion::{Attraction, Cohesion, CohesionState};
 pub use constants::Constants;
 pub use parameters::ContactParameters;
 pub(crate) use prepare::KEPT;
@@ -58,5 +60,7 @@ pub use turning::{Moments, Turn, TurningState};
 pub use turning_constants::TurningConstants;
 pub use virgin::{ContactError, FirstLoading, Given, POINTS, Shapes, Virgin, VirginPoint, measured_slope, unloading_exponent};
 
+#[cfg(test)]
+mod cohesion_tests;
 #[cfg(test)]
 mod tests;

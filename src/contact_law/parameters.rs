@@ -1,5 +1,6 @@
 //! What the update needs to know of a pair of materials.
 
+use super::cohesion::{Attraction, Cohesion, CohesionState, cohere};
 use super::constants::Constants;
 use super::prepare::prepare;
 use super::state::{ContactResponse, ContactState};
@@ -105,6 +106,33 @@ impl ContactParameters {
         turn: Turn,
     ) -> (ContactState, TurningState, ContactResponse, Moments) {
         update_turning(&self.table, self.first_loading.radius, (state, turning), h, increment, turn)
+    }
+
+    /// The attraction of the surfaces: the work of adhesion, energy over area (0: none), and the
+    /// distance over which surfaces that do not touch attract each other (0: none, as in soft
+    /// contacts).
+    pub fn cohesion(&self, work: f64, range: f64) -> Cohesion {
+        let undeformed = [self.first_loading.effective_modulus, self.first_loading.radius];
+        Cohesion::new(&self.table, undeformed, work, range)
+    }
+
+    /// Greatest gap over which surfaces that have met may hold each other, length.
+    pub fn greatest_gap(&self, cohesion: &Cohesion) -> f64 {
+        cohesion.greatest_gap(&self.table)
+    }
+
+    /// What cohesion adds to an increment that [`update`](Self::update) or
+    /// [`update_turning`](Self::update_turning) has made of a contact: its states before and after,
+    /// what cohesion remembers, and the tangential increment. A pure function. With `work` 0 it
+    /// adds nothing.
+    pub fn cohere(
+        &self,
+        cohesion: &Cohesion,
+        contact: (&ContactState, &ContactState),
+        state: &CohesionState,
+        increment: [f64; 2],
+    ) -> (CohesionState, Attraction) {
+        cohere(&self.table, cohesion, contact, state, increment)
     }
 
     /// Elastic energy that the contact stores, force times length: no path gives back more than it.

@@ -18,11 +18,14 @@
  *   says why, and the memory stays as it was.
  * - Twist and roll: asperity_spheres_turning() and asperity_sphere_wall_turning() take and give a second memory, an asperity_turning, all zero before first contact; the torques
  *   then have the moments of twist and roll. Without it, as in asperity_spheres(), a contact does not feel that the bodies turn against each other at one point.
+ * - Cohesion: asperity_law_cohesion() says how surfaces attract each other; asperity_spheres_cohesive() and asperity_sphere_wall_cohesive() take and give a memory of it, an
+ *   asperity_cohesion, all zero before first contact. Call them for all pairs that are nearer than asperity_holding_gap() and keep the memories until asperity_may_forget_cohesive().
  * - A body that no force moves (frozen, driven) has the mass INFINITY, one of a rigid body the mass of that: damping goes by it.
  */
 #ifndef ASPERITY_CONTACT3D_H
 #define ASPERITY_CONTACT3D_H
 
+#include "asperity_cohesion.h"
 #include "asperity_turning.h"
 
 /* Flags of asperity_forces. */
@@ -30,7 +33,8 @@ enum {
     ASPERITY_TOUCHES = 1,
     ASPERITY_OUT_OF_RANGE = 2, /* has been deeper than the law was made for */
     ASPERITY_WRONG_TABLE = 4,  /* a wall's table between spheres, or a pair's at a wall: no forces */
-    ASPERITY_NO_NUMBER = 8     /* the centres coincide, or something is no number: no forces */
+    ASPERITY_NO_NUMBER = 8,    /* the centres coincide, or something is no number: no forces */
+    ASPERITY_HOLDS = 16        /* the surfaces hold each other by cohesion */
 };
 
 /* What asperity_pair_law() and asperity_wall_law() return. */
@@ -48,6 +52,7 @@ typedef struct asperity_law3d {
     asperity_real modulus;    /* Young's */
     asperity_real damping;    /* of asperity_damping(), 0: none but the law's own losses */
     asperity_real tangential; /* dashpot along the plane over that across it, 0: none. It is bounded by friction */
+    asperity_cohesive cohesion; /* of asperity_law_cohesion() */
 } asperity_law3d;
 
 typedef struct asperity_body {
@@ -71,8 +76,9 @@ typedef struct asperity_contact {
 typedef struct asperity_forces {
     asperity_real force_i[3], torque_i[3], force_j[3], torque_j[3];
     asperity_real f_n, f_t, overlap;
-    asperity_real stored; /* elastic energy */
+    asperity_real stored; /* elastic energy; with cohesion also that, which is negative */
     asperity_real damped; /* work that the damping has taken in this step */
+    asperity_real parted; /* work that cohesion has dissipated in this step, as surfaces met, parted or were flattened */
     int flags;
 } asperity_forces;
 
@@ -181,6 +187,16 @@ ASPERITY_FN int asperity_may_forget(const asperity_contact *contact) {
     return contact->state.h < ASPERITY_R(0.0) && -contact->state.h >= contact->state.h_max;
 }
 
+/* The memory of cohesion as the other particle has it. */
+ASPERITY_FN void asperity_exchange_cohesion(asperity_cohesion *cohesion) {
+    cohesion->slider[0] = -cohesion->slider[0];
+}
+
+/* Whether both memories may go. */
+ASPERITY_FN int asperity_may_forget_cohesive(const asperity_contact *contact, const asperity_cohesion *cohesion) {
+    return asperity_may_forget(contact) && cohesion->joined == ASPERITY_R(0.0);
+}
+
 /* The factor of a dashpot, force = factor sqrt(m k) v, with k = 2 E* a the stiffness of an unloading, that gives an impact which stays elastic the restitution coefficient e,
  * 0.1 <= e <= 1. The dashpot never pulls. A fit to the integrated motion, to 1e-5 in e. */
 ASPERITY_FN asperity_real asperity_damping(asperity_real restitution) {
@@ -216,6 +232,7 @@ ASPERITY_FN int asperity_make_law(asperity_law3d *law, const asperity_table *tab
     law->table = table;
     law->modulus = modulus;
     law->damping = law->tangential = ASPERITY_R(0.0);
+    asperity_make_cohesion(&law->cohesion, table, ASPERITY_R(0.0), ASPERITY_R(0.0));
     if (!asperity_is_finite(modulus) || !(modulus > ASPERITY_R(0.0))) {
         return ASPERITY_LAW_MODULUS;
     }
@@ -236,6 +253,23 @@ ASPERITY_FN int asperity_pair_law(asperity_law3d *law, const asperity_table *tab
 ASPERITY_FN int asperity_wall_law(asperity_law3d *law, const asperity_table *table, asperity_real modulus, asperity_real restitution) {
     int code = asperity_make_law(law, table, modulus, restitution);
     return table->plane ? code : ASPERITY_LAW_OF_A_PAIR;
+}
+
+/* Cohesion of a law that is made: work of adhesion w (energy over area, 0: none) and the range over which surfaces that do not touch attract each other (0: none). Returns 0, or 1 if one
+ * of them is not 0 or more. */
+ASPERITY_FN int asperity_law_cohesion(asperity_law3d *law, asperity_real work, asperity_real range) {
+    return asperity_make_cohesion(&law->cohesion, law->table, work * law->table->share, range * law->table->share);
+}
+
+/* The radius of the table's sphere, whose R* is effective_radius, for R* of a contact; a plane that stands in is that of each sphere by itself. */
+ASPERITY_FN asperity_real asperity_table_radius(const asperity_table *table, asperity_real effective) {
+    return effective / ((table->plane ? ASPERITY_R(1.0) : table->share) * table->effective_radius);
+}
+
+/* Greatest gap over which two spheres may hold each other, or a sphere and a wall, where radius_j is 0. It grows with the radii. */
+ASPERITY_FN asperity_real asperity_holding_gap(const asperity_law3d *law, asperity_real radius_i, asperity_real radius_j) {
+    asperity_real effective = radius_j > ASPERITY_R(0.0) ? radius_i * radius_j / (radius_i + radius_j) : radius_i;
+    return asperity_greatest_gap(&law->cohesion, law->table, asperity_table_radius(law->table, effective), law->modulus) / law->table->share;
 }
 
 /* The mass of a body against one that does not move. 0, which is no damping, where no force moves it either. */
@@ -261,7 +295,7 @@ ASPERITY_FN void asperity_no_answer(int flag, const asperity_contact *before, as
     for (k = 0; k < 3; k++) {
         out->force_i[k] = out->torque_i[k] = out->force_j[k] = out->torque_j[k] = bad;
     }
-    out->f_n = out->f_t = out->overlap = out->stored = out->damped = bad;
+    out->f_n = out->f_t = out->overlap = out->stored = out->damped = out->parted = bad;
     out->flags = flag;
     *after = *before;
 }
@@ -277,12 +311,14 @@ ASPERITY_FN asperity_real asperity_allowed(const asperity_real f[2], const asper
 }
 
 /* What both kinds of contact do once normal, lever arms and relative velocity are known: n from j to i, v that of i's point of contact relative to j's, `turns` the spin of i
- * relative to j. `turning` is NULL where twist and roll are left out. */
+ * relative to j. `turning` is NULL where twist and roll are left out, `cohesion` where that is. */
 ASPERITY_FN void asperity_contact_forces(
     const asperity_law3d *law, asperity_real radius, asperity_real mass, asperity_real overlap, const asperity_real n[3], const asperity_real v[3],
     const asperity_real spin[3], const asperity_real turns[3], asperity_real arm_i, asperity_real arm_j, asperity_real dt, const asperity_contact *before, asperity_contact *after,
-    const asperity_turning *turning, asperity_turning *turning_after, asperity_forces *out) {
+    const asperity_turning *turning, asperity_turning *turning_after, const asperity_cohesion *cohesion, asperity_cohesion *cohesion_after, asperity_forces *out) {
     asperity_contact c = *before;
+    asperity_cohesion joined;
+    asperity_attraction pull;
     asperity_moments moments;
     asperity_response answer;
     asperity_real e1[3], e2[3], d[2], along[2], share = law->table->share, approaching = -asperity_dot(v, n), tangential[3], turn[3], f_n, factor, dashpot = ASPERITY_R(0.0);
@@ -302,6 +338,12 @@ ASPERITY_FN void asperity_contact_forces(
         asperity_update_turning(law->table, radius, law->modulus, &before->state, turning, share * overlap, d, turn, &c.state, turning_after, &answer, &moments, NULL);
     } else {
         asperity_update(law->table, radius, law->modulus, &c.state, share * overlap, d, &c.state, &answer, NULL);
+    }
+    if (cohesion) {
+        asperity_cohere(&law->cohesion, law->table, radius, law->modulus, &before->state, &c.state, cohesion, d, &joined, &pull);
+        if (!asperity_is_finite(pull.f_n)) {
+            answer.f_n = pull.f_n;
+        }
     }
     if (!asperity_is_finite(answer.f_n) || !asperity_is_finite(answer.f_t[0] + answer.f_t[1])) {
         asperity_no_answer(ASPERITY_NO_NUMBER, before, after, out);
@@ -327,9 +369,18 @@ ASPERITY_FN void asperity_contact_forces(
             out->damped += factor * (d[0] * along[0] + d[1] * along[1]) * dt;
         }
     }
+    if (cohesion) {
+        f_n += pull.f_n;
+        answer.f_t[0] += pull.f_t[0];
+        answer.f_t[1] += pull.f_t[1];
+        c.slip += pull.slip / share;
+        out->stored += pull.stored / share;
+        out->parted = pull.lost / share;
+    }
     out->f_n = f_n;
     out->f_t = ASPERITY_SQRT(answer.f_t[0] * answer.f_t[0] + answer.f_t[1] * answer.f_t[1]);
-    out->flags = (answer.f_n > ASPERITY_R(0.0) ? ASPERITY_TOUCHES : 0) | (asperity_out_of_range(law->table, &c.state) ? ASPERITY_OUT_OF_RANGE : 0);
+    out->flags = (answer.f_n > ASPERITY_R(0.0) ? ASPERITY_TOUCHES : 0) | (asperity_out_of_range(law->table, &c.state) ? ASPERITY_OUT_OF_RANGE : 0) |
+                 (cohesion && joined.joined > ASPERITY_R(0.0) ? ASPERITY_HOLDS : 0);
     for (k = 0; k < 3; k++) {
         tangential[k] = -(answer.f_t[0] * e1[k] + answer.f_t[1] * e2[k]);
         out->force_i[k] = f_n * n[k] + tangential[k];
@@ -345,13 +396,17 @@ ASPERITY_FN void asperity_contact_forces(
         }
     }
     *after = c;
+    if (cohesion) {
+        *cohesion_after = joined;
+    }
 }
 
-/* Two spheres of one material that twist and roll on each other. What is after may be what is before, and they must be kept or dropped together. */
-ASPERITY_FN void asperity_spheres_turning(
+/* Two spheres of one material that hold each other by cohesion and, unless `turning` is NULL, twist and roll. What is after may be what is before, and they must be kept or dropped
+ * together. */
+ASPERITY_FN void asperity_spheres_cohesive(
     const asperity_law3d *law, const asperity_body *i, const asperity_body *j, asperity_real dt, const asperity_contact *before, asperity_contact *after,
-    const asperity_turning *turning, asperity_turning *turning_after, asperity_forces *out) {
-    asperity_real n[3], spin[3], turns[3], v[3], across_i[3], across_j[3], distance, overlap, arm_i, arm_j, share = law->table->share;
+    const asperity_turning *turning, asperity_turning *turning_after, const asperity_cohesion *cohesion, asperity_cohesion *cohesion_after, asperity_forces *out) {
+    asperity_real n[3], spin[3], turns[3], v[3], across_i[3], across_j[3], distance, overlap, arm_i, arm_j;
     int k;
     if (law->table->plane) {
         asperity_no_answer(ASPERITY_WRONG_TABLE, before, after, out);
@@ -378,10 +433,16 @@ ASPERITY_FN void asperity_spheres_turning(
     for (k = 0; k < 3; k++) {
         v[k] = i->velocity[k] - j->velocity[k] - arm_i * across_i[k] - arm_j * across_j[k];
     }
-    /* The table's sphere, whose R* is effective_radius; a plane that stands in is that of each sphere by itself. */
     asperity_contact_forces(
-        law, i->radius * j->radius / (i->radius + j->radius) / (share * law->table->effective_radius), asperity_effective_mass(i->mass, j->mass), overlap, n, v, spin, turns, arm_i, arm_j, dt, before, after, turning,
-        turning_after, out);
+        law, asperity_table_radius(law->table, i->radius * j->radius / (i->radius + j->radius)), asperity_effective_mass(i->mass, j->mass), overlap, n, v, spin, turns, arm_i, arm_j, dt, before, after, turning,
+        turning_after, cohesion, cohesion_after, out);
+}
+
+/* Two spheres of one material that twist and roll on each other. */
+ASPERITY_FN void asperity_spheres_turning(
+    const asperity_law3d *law, const asperity_body *i, const asperity_body *j, asperity_real dt, const asperity_contact *before, asperity_contact *after,
+    const asperity_turning *turning, asperity_turning *turning_after, asperity_forces *out) {
+    asperity_spheres_cohesive(law, i, j, dt, before, after, turning, turning_after, NULL, NULL, out);
 }
 
 /* Two spheres of one material. `after` may be `before`. */
@@ -391,10 +452,10 @@ ASPERITY_FN void asperity_spheres(
     asperity_spheres_turning(law, i, j, dt, before, after, NULL, NULL, out);
 }
 
-/* A sphere that twists and rolls on a rigid plane; force_j and torque_j are those on the wall, about the point of contact. */
-ASPERITY_FN void asperity_sphere_wall_turning(
+/* A sphere that holds to a rigid plane by cohesion and, unless `turning` is NULL, twists and rolls on it; force_j and torque_j are those on the wall, about the point of contact. */
+ASPERITY_FN void asperity_sphere_wall_cohesive(
     const asperity_law3d *law, const asperity_body *i, const asperity_wall *wall, asperity_real dt, const asperity_contact *before, asperity_contact *after,
-    const asperity_turning *turning, asperity_turning *turning_after, asperity_forces *out) {
+    const asperity_turning *turning, asperity_turning *turning_after, const asperity_cohesion *cohesion, asperity_cohesion *cohesion_after, asperity_forces *out) {
     asperity_real spin[3], turns[3], v[3], across_i[3], across_wall[3], from[3], distance, arm;
     int k;
     if (!law->table->plane) {
@@ -417,7 +478,14 @@ ASPERITY_FN void asperity_sphere_wall_turning(
         v[k] = i->velocity[k] - arm * across_i[k] - wall->velocity[k] - across_wall[k];
     }
     asperity_contact_forces(law, i->radius / law->table->effective_radius, asperity_damped_mass(i->mass), i->radius - distance, wall->normal, v, spin, turns, arm, ASPERITY_R(0.0), dt, before, after,
-        turning, turning_after, out);
+        turning, turning_after, cohesion, cohesion_after, out);
+}
+
+/* A sphere that twists and rolls on a rigid plane. */
+ASPERITY_FN void asperity_sphere_wall_turning(
+    const asperity_law3d *law, const asperity_body *i, const asperity_wall *wall, asperity_real dt, const asperity_contact *before, asperity_contact *after,
+    const asperity_turning *turning, asperity_turning *turning_after, asperity_forces *out) {
+    asperity_sphere_wall_cohesive(law, i, wall, dt, before, after, turning, turning_after, NULL, NULL, out);
 }
 
 /* A sphere on a rigid plane. */

@@ -15,6 +15,7 @@ use super::turning_constants::{LEVERS, LEVERS_SQUARED, TWIST_FOLLOWS, TWIST_LEVE
 
 const HEADER: &str = include_str!("asperity_contact.h");
 const HEADER_TURNING: &str = include_str!("asperity_turning.h");
+const HEADER_COHESION: &str = include_str!("asperity_cohesion.h");
 const HEADER_3D: &str = include_str!("asperity_contact3d.h");
 const CHECK: &str = include_str!("asperity_contact_check.c");
 
@@ -22,6 +23,8 @@ const CHECK: &str = include_str!("asperity_contact_check.c");
 pub const HEADER_NAME: &str = "asperity_contact.h";
 /// Name of what twists and rolls a contact.
 pub const TURNING_NAME: &str = "asperity_turning.h";
+/// Name of what holds surfaces together.
+pub const COHESION_NAME: &str = "asperity_cohesion.h";
 
 /// The update, which is the same for every law.
 pub fn header() -> String {
@@ -76,6 +79,11 @@ pub fn header_turning() -> String {
         ("ROLL_FLOW", constants.roll_flow),
     ];
     fill(HEADER_TURNING, numbers.map(|(name, value)| (name, format!("{value:?}"))))
+}
+
+/// Its use for a contact whose surfaces attract each other.
+pub fn header_cohesion() -> String {
+    HEADER_COHESION.to_owned()
 }
 
 /// Its use in three dimensions.
