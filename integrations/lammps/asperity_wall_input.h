@@ -12,7 +12,8 @@ namespace LAMMPS_NS {
 class WallInput {
   static constexpr const char *USAGE =
       "fix ID group wall/asperity SHAPE type T TABLE E [restitution e] [tangential f] [cohesion W [range Z]] [changed] "
-      "[type ...] [velocity vx vy vz] [turning yes|no] [spin wx wy wz] [load dx dy dz F mass M [damping C]], SHAPE: x y z nx ny nz | "
+      "[type ...] [velocity vx vy vz] [turning yes|no] [spin wx wy wz] [load dx dy dz F mass M [damping C]], SHAPE: "
+      "x y z nx ny nz | "
       "cylinder x y z ax ay az R inside or outside | cone x1 y1 z1 R1 x2 y2 z2 R2 | "
       "stl FILE [scale s] [shift x y z] [at x y z] [merge DEGREES]";
   static constexpr double MERGE = 15.0, FOLLOWS = 30.0;    // degrees

@@ -59,7 +59,7 @@ class FixAsperityHistory : public Fix {
   void setup_pre_exchange() override { pre_exchange(); }
   void pre_exchange() override
   {
-    int most = 0;
+    int most = HEAD;
     for (int i = 0; i < atom->nlocal; i++) most = std::max(most, numbers(i));
     maxexchange = most;
   }

@@ -365,8 +365,11 @@ class FixWallAsperity : public Fix {
     asperity_turning turned = record.turning;
     asperity_turning *memory = this->turning ? &turned : nullptr;
     asperity_cohesion joined = record.cohesion;
-    asperity_cohesion *held = laws[type]->coheres() ? &joined : nullptr;
-    asperity_sphere_wall_cohesive(&laws[type]->law, &body, &wall, dt, &record.contact, &after, memory, memory, held, held, &out);
+    const asperity_law3d *law = &laws[type]->law;
+    if (laws[type]->coheres())
+      asperity_sphere_wall_cohesive(law, &body, &wall, dt, &record.contact, &after, memory, memory, &joined, &joined, &out);
+    else
+      asperity_sphere_wall_turning(law, &body, &wall, dt, &record.contact, &after, memory, memory, &out);
     if (out.flags & ASPERITY_NO_NUMBER)
       error->one(FLERR, "fix wall/asperity {}: there is no force on sphere {}: its place, its velocity or the memory of the "
                         "contact is no number", id, atom->tag[i]);

@@ -40,8 +40,10 @@ class PairAsperity : public Pair {
     fill(b, atom, masses, first ? j : i);
     asperity_turning *memory = turning ? &turned : nullptr;
     const Law &law = *laws[atom->type[i]][atom->type[j]];
-    asperity_cohesion *held = law.coheres() ? &joined : nullptr;
-    asperity_spheres_cohesive(&law.law, &a, &b, dt, &before, &after, memory, memory, held, held, &out);
+    if (law.coheres())
+      asperity_spheres_cohesive(&law.law, &a, &b, dt, &before, &after, memory, memory, &joined, &joined, &out);
+    else
+      asperity_spheres_turning(&law.law, &a, &b, dt, &before, &after, memory, memory, &out);
     if (out.flags & ASPERITY_NO_NUMBER)
       error->one(FLERR, "pair_style asperity: there is no force between spheres {} and {}: their centres coincide, or a place, "
                         "a velocity or the memory of the contact is no number", atom->tag[i], atom->tag[j]);

@@ -1,13 +1,14 @@
 //! Cohesion of one contact, beside the update. Its twin is `asperity_cohesion.h`.
 //!
-//! The law is driven at h, as without cohesion. Beside it stands the attraction of the surfaces: w is
-//! the work of adhesion, energy over area, and the contact under it is that of Johnson, Kendall &
-//! Roberts, *Proc. R. Soc. A* 324 (1971), over the elastic curve F(e) of an unloading. Its radius a
-//! is that of the approach x = e + delta without attraction, with S = dF/de, A = pi a^2 and
-//! S' delta^2/2 = w A'; its force is F(x) - S(x) delta, its energy that of the body less w A. On an
-//! elastic sphere this is their curve; on a flattened one a is what plastic flow has left: a^2 goes
-//! with eta (1 + c - c eta), eta = e/D, from a sphere (c = 0) to a uniform pressure taken off
-//! (c = 1; Mesarovic & Johnson, *J. Mech. Phys. Solids* 48 (2000)), c such that F(D) is the law's.
+//! The law is driven at h, as without cohesion. Beside it stands the attraction of the surfaces:
+//! w is the work of adhesion, energy over area, and the contact under it is that of Johnson,
+//! Kendall & Roberts, *Proc. R. Soc. A* 324 (1971), over the elastic curve F(e) of an unloading.
+//! Its radius a is that of the approach x = e + delta without attraction, with S = dF/de, A = pi
+//! a^2 and S' delta^2/2 = w A'; its force is F(x) - S(x) delta, its energy that of the body less
+//! w A. On an elastic sphere this is their curve; on a flattened one a is what plastic flow has
+//! left: a^2 goes with eta (1 + c - c eta), eta = e/D, from a sphere (c = 0) to a uniform
+//! pressure taken off (c = 1; Mesarovic & Johnson, *J. Mech. Phys. Solids* 48 (2000)), c such
+//! that F(D) is the law's.
 //!
 //! - *Flow closes without attraction*: x goes no further than the approach D at which the contact
 //!   yields. There the attraction is gone; F_N of a press is the law's, as in LAMMPS' MDR.
