@@ -103,7 +103,7 @@ pub const TABLES: [(&str, &str); 10] = [
     ("mesh", "how finely the bodies are meshed; every key is optional"),
     ("solver", "how the equations are solved; every key is optional"),
     ("output", "what is written besides history and summary; every key is optional"),
-    ("units", "units named here replace the normalised axes of pictures; results do not change. Every key is optional"),
+    ("units", "units on the axes of pictures, which are normalised without them; results do not change"),
     ("path", "the segments, followed in order; the first one presses"),
 ];
 

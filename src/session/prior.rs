@@ -102,8 +102,8 @@ fn extendable(out: &OutputDirectory, case: &Case, summary: &Summary) -> Result<P
     shorter.path.truncate(segments);
     let meshed = |case: &Case| (case.is_even(), case.image(), case.orientation(), case.moves_along_x());
     if meshed(&shorter) != meshed(case) {
-        let why = "the longer path leaves the x axis, or turns the sphere, and from the beginning it would be simulated otherwise, \
-                   mostly on the whole sphere. Compute it in another directory, or with --force";
+        let why = "the longer path leaves the x axis, turns the sphere or has another first direction, and from the beginning it \
+                   would be simulated otherwise, mostly on the whole sphere. Compute it in another directory, or with --force";
         return Err(NotExtendable::Why(why.to_owned()));
     }
     Ok(PriorRun::Extendable(Box::new(checkpoint), segments))

@@ -50,9 +50,12 @@ fn scout(rows: &[StepRecord], elements: usize, case: &Case) -> Scout {
     let units = Units::of(case);
     let scaled = |row: &StepRecord| {
         let force = units.force();
-        let [f_n, f_t, f_t_y] = [row.f_n, row.f_t, row.f_t_y].map(|value| value / force);
+        let in_mesh = |x: f64, y: f64| units.orientation.to_mesh([x, y]);
+        let [f_t, f_t_y] = in_mesh(row.f_t, row.f_t_y).map(|value| value / force);
+        let [delta_t, delta_t_y] = in_mesh(row.delta_t, row.delta_t_y);
         // With a radius of 1 a stiffness has the unit of a force.
-        Scaled(StepRecord { f_n, f_t, f_t_y, k_t: row.k_t.map(|k_t| k_t / force), ..*row })
+        let k_t = row.k_t.map(|k_t| k_t / force);
+        Scaled(StepRecord { f_n: row.f_n / force, f_t, f_t_y, delta_t, delta_t_y, k_t, ..*row })
     };
     Scout { rows: rows.iter().map(scaled).collect(), spacing: 0.2 / elements as f64, elements, ..Scout::default() }
 }

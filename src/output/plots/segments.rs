@@ -43,7 +43,9 @@ impl SegmentSteps<'_> {
         if last.angles() != from.angles() {
             return "turn";
         }
-        if last.delta_t_y != from.delta_t_y {
+        // Not to the last bit: a mesh that does not lie along x turns what moves.
+        let across = last.delta_t_y - from.delta_t_y;
+        if across.abs() > 1e-9 * delta_t.abs() {
             return "shear";
         }
         match (delta_t, h) {
