@@ -364,7 +364,8 @@ class FixWallAsperity : public Fix {
     for (int k = 0; k < 3; k++) wall.velocity[k] = motion.velocity[k] + turning[k];
     asperity_turning turned = record.turning;
     asperity_turning *memory = this->turning ? &turned : nullptr;
-    asperity_cohesion joined = record.cohesion;
+    // After a restart without cohesion nothing of it is left.
+    asperity_cohesion joined = laws[type]->coheres() ? record.cohesion : asperity_cohesion{};
     const asperity_law3d *law = &laws[type]->law;
     if (laws[type]->coheres())
       asperity_sphere_wall_cohesive(law, &body, &wall, dt, &record.contact, &after, memory, memory, &joined, &joined, &out);

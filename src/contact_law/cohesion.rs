@@ -133,6 +133,8 @@ struct Shape {
     range: f64,
     /// x at the most.
     most: f64,
+    /// R of the undeformed contact.
+    radius: f64,
 }
 
 /// At an approach without attraction: F_N, its energy, its stiffness.
@@ -191,7 +193,8 @@ impl Cohesion {
         let delta = a * (4.0 * PI * self.work / stiff).sqrt();
         let along = row.value[LN_STIFFNESS] / stiff;
         let (work, range, area) = (self.work, self.range, PI * a * a);
-        let mut shape = Shape { dent, approach, stiff, area, delta, round: 0.0, along, work, range, most: approach };
+        let radius = self.radius;
+        let mut shape = Shape { dent, approach, stiff, area, delta, round: 0.0, along, work, range, most: approach, radius };
         if whole {
             // Attraction by itself makes no dent: up to where F has its least value there is none.
             let pull = if range > 0.0 { range } else { shape.turns(3.0) };
@@ -283,7 +286,7 @@ impl Shape {
     }
 
     /// Area over which undeformed surfaces are less than `z` apart, and its integral from 0 on: by
-    /// their curvature, and no more than at D.
+    /// their curvature, and beyond what is flattened by that of the sphere.
     fn near(&self, z: f64) -> (f64, f64) {
         let eta = 2.0 * z / self.approach;
         if self.round == 0.0 {
@@ -291,7 +294,9 @@ impl Shape {
         }
         let to = if eta < 1.0 { eta } else { 1.0 };
         let sum = 0.5 * self.approach * to * to * (0.5 * (1.0 + self.round) - self.round * to / 3.0);
-        (self.area * self.wide(to).0, self.area * (sum + 0.5 * self.approach * (eta - to)))
+        let beyond = 0.5 * self.approach * (eta - to);
+        let around = PI * self.radius * beyond;
+        (self.area * self.wide(to).0 + 2.0 * around, self.area * (sum + beyond) + around * beyond)
     }
 
     /// What a range adds at the elastic approach e: as much in contact as at its beginning, but
@@ -339,29 +344,28 @@ fn lost(before: &CohesionState, after: &Held, dh: f64) -> f64 {
 
 /// The shape that a contact has at the indentation h, after one that `dh` led there, and what holds
 /// there: that of before, or that of the law's hardening where it has less energy, by more than the
-/// work of the step.
+/// work of the step. Surfaces meet where the law's hardened shape touches.
 fn join(cohesion: &Cohesion, table: &Table, state: &mut CohesionState, contact: &ContactState, dh: f64) -> (Shape, Held) {
     let now = |flattened: f64| {
         let shape = cohesion.shape(table, flattened);
         (shape, contact.h - shape.dent)
     };
-    if state.joined == 1.0 {
+    let (flat, e) = now(contact.hardened);
+    let (shape, held) = if contact.hardened > state.flattened {
         let (shape, e) = now(state.flattened);
-        if let Some(held) = shape.held(e) {
-            if contact.hardened > state.flattened {
-                let (flat, e) = now(contact.hardened);
-                let loses = |less: &Held| less.energy <= held.energy && lost(state, less, dh) >= 0.0;
-                if let Some(less) = flat.held(e).filter(loses) {
-                    state.flattened = contact.hardened;
-                    return (flat, less);
-                }
-            }
-            return (shape, held);
+        (shape, shape.held(e))
+    } else {
+        (flat, flat.held(e))
+    };
+    let meets = state.joined != 1.0 && e >= -cohesion.range;
+    let held = held.filter(|held| state.joined == 1.0 || meets && held.energy <= 0.0);
+    if contact.hardened > state.flattened && (held.is_some() || meets) {
+        let loses = |less: &Held| less.energy <= held.map_or(0.0, |held| held.energy) && lost(state, less, dh) >= 0.0;
+        if let Some(less) = flat.held(e).filter(loses) {
+            (state.flattened, state.joined) = (contact.hardened, 1.0);
+            return (flat, less);
         }
     }
-    state.flattened = contact.hardened;
-    let (shape, e) = now(state.flattened);
-    let held = if e >= -cohesion.range { shape.held(e).filter(|held| held.energy <= 0.0) } else { None };
     state.joined = if held.is_some() { 1.0 } else { 0.0 };
     (shape, held.unwrap_or_default())
 }
@@ -384,7 +388,9 @@ pub(super) fn cohere(
         return (*state, Attraction { f_n: nan, f_t: [nan; 2], stored: nan, lost: nan, slip: nan });
     }
     let mut next = *state;
-    let dh = after.h - before.h;
+    // What never touched comes from where attraction begins.
+    let begins = if state.joined == 0.0 && before.h_max == 0.0 && before.h == 0.0 { cohesion.range } else { 0.0 };
+    let dh = after.h - before.h + begins;
     let (shape, held) = join(cohesion, table, &mut next, after, dh);
     (next.f_n, next.energy) = (held.f_n, held.energy);
     let lost = lost(state, &held, dh);

@@ -165,6 +165,47 @@ fn a_flattened_sphere_is_pulled_off_as_by_mesarovic_and_johnson() {
     }
 }
 
+/// Touched again, a contact holds as well as when it was pulled off after the press, or as a sphere
+/// that has not yielded.
+#[test]
+fn touched_again_it_holds_as_before() {
+    for stress in [100.0, 400.0] {
+        let law = pair(stress, 0.0);
+        for (w, range) in [(1e-3, 0.0), (0.1, 0.0), (10.0, 0.0), (0.1, 1e-4), (0.1, 3e-3), (10.0, 1e-2)] {
+            let sphere = if range > 0.0 { TAU } else { 1.5 * PI } * w * SPHERE.radius;
+            for h in [1e-4, 1e-3, 1e-2] {
+                let mut contact = Follow::new(&law, law.cohesion(w, range));
+                let away = -1.1 * law.greatest_gap(&contact.cohesion);
+                contact.go(h, 200);
+                let first = contact.go(away, 8000);
+                assert_eq!(contact.memory.joined, 0.0);
+                let dent = contact.state.h - contact.state.approach;
+                contact.go(dent + 1e-3 * h, 200);
+                let again = contact.go(away, 8000);
+                let expected = first.abs().min(sphere);
+                println!("yield {stress}, w {w}, range {range}, h {h}: {:.3} {:.3}", first / sphere, again / sphere);
+                assert!(-again > 0.995 * expected, "yield {stress}, w {w}, range {range}, h {h}: {again} after {first}");
+            }
+        }
+    }
+}
+
+/// Surfaces that meet within a range lose nothing: nothing jumps.
+#[test]
+fn within_a_range_a_meeting_loses_nothing() {
+    let law = pair(1e5, 0.0);
+    let (w, range) = (0.1, 1e-3);
+    for steps in [5, 10, 40] {
+        let mut contact = Follow::new(&law, law.cohesion(w, range));
+        for k in 1..=steps {
+            contact.step(-range * (1.0 - f64::from(k) / f64::from(steps)), [0.0; 2]);
+        }
+        let energy = PI * SPHERE.radius * w * range;
+        assert!((contact.stored / energy + 1.0).abs() < 1e-6, "{} {energy}", contact.stored);
+        assert!(contact.lost.abs() < 1e-6 * energy, "{steps} steps: {} of {energy}", contact.lost);
+    }
+}
+
 #[test]
 fn without_it_nothing_changes() {
     let law = pair(400.0, 0.0);

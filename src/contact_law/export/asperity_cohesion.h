@@ -59,6 +59,7 @@ typedef struct asperity_attraction {
 typedef struct asperity_shape_of {
     double dent, approach, stiff, area, delta; /* elastic approach D of first loading; stiffness, area and delta there */
     double round, along, work, range, most;    /* c; k_T over the stiffness; w and its range; x at the most */
+    double radius;                             /* of the undeformed contact */
 } asperity_shape_of;
 
 /* An attracted contact: its energy and normal force beside those of the law, and by how much F_N and the stiffness at x are more. */
@@ -156,6 +157,7 @@ ASPERITY_FN void asperity_shape_at(const asperity_cohesive *cohesion, const aspe
     s->area = ASPERITY_PI * a * a;
     s->work = (double)cohesion->work * scale;
     s->range = range;
+    s->radius = (double)t->effective_radius;
     s->delta = a * sqrt(4.0 * ASPERITY_PI * s->work / s->stiff);
     s->along = asperity_exponential(row.value[ASPERITY_LN_STIFFNESS]) / s->stiff;
     s->round = 0.0;
@@ -237,15 +239,17 @@ ASPERITY_FN double asperity_joined(const asperity_shape_of *s, double e) {
     return x;
 }
 
-/* Area over which undeformed surfaces are less than z apart, by their curvature, and no more than at D; its integral from 0 on. */
+/* Area over which undeformed surfaces are less than z apart, by their curvature, and beyond what is flattened by that of the sphere; its integral from 0 on. */
 ASPERITY_FN double asperity_near(const asperity_shape_of *s, double z, double *sum) {
-    double eta = 2.0 * z / s->approach, to = eta < 1.0 ? eta : 1.0, unused;
+    double eta = 2.0 * z / s->approach, to = eta < 1.0 ? eta : 1.0, beyond, around, unused;
     if (s->round == 0.0) {
         *sum = 0.5 * s->area * eta * z;
         return s->area * eta;
     }
-    *sum = s->area * (0.5 * s->approach * to * to * (0.5 * (1.0 + s->round) - s->round * to / 3.0) + 0.5 * s->approach * (eta - to));
-    return s->area * asperity_wide(s, to, &unused);
+    beyond = 0.5 * s->approach * (eta - to);
+    around = ASPERITY_PI * s->radius * beyond;
+    *sum = s->area * (0.5 * s->approach * to * to * (0.5 * (1.0 + s->round) - s->round * to / 3.0) + beyond) + around * beyond;
+    return s->area * asperity_wide(s, to, &unused) + 2.0 * around;
 }
 
 /* What a range adds at the elastic approach e: as much in contact as at its beginning, but less and less over the last of the way to where the contact yields. */
@@ -300,44 +304,43 @@ ASPERITY_FN double asperity_lost_work(const asperity_cohesion *before, const asp
 }
 
 /* The shape that a contact has at the indentation h, after one that dh led there, and what holds there: that of before, or that of the law's hardening where it has less energy, by more
- * than the work of the step. */
+ * than the work of the step. Surfaces meet where the law's hardened shape touches. */
 ASPERITY_FN void asperity_join(
     const asperity_cohesive *cohesion, const asperity_table *t, double scale, double range, asperity_cohesion *memory, const asperity_state *contact, double dh,
     asperity_shape_of *shape, asperity_held *held) {
-    double h = (double)contact->h;
-    int holds = 0;
-    if (memory->joined == ASPERITY_R(1.0)) {
+    double h = (double)contact->h, e;
+    int hardens = contact->hardened > memory->flattened, joined = memory->joined == ASPERITY_R(1.0), meets, holds;
+    asperity_shape_of flat;
+    asperity_held less;
+    asperity_shape_at(cohesion, t, scale, range, (double)contact->hardened, &flat);
+    e = h - flat.dent;
+    if (hardens) {
         asperity_shape_at(cohesion, t, scale, range, (double)memory->flattened, shape);
-        if (asperity_hold(shape, h - shape->dent, held)) {
-            if (contact->hardened > memory->flattened) {
-                asperity_shape_of flat;
-                asperity_held less;
-                asperity_shape_at(cohesion, t, scale, range, (double)contact->hardened, &flat);
-                if (asperity_hold(&flat, h - flat.dent, &less) && less.energy <= held->energy && asperity_lost_work(memory, &less, dh) >= 0.0) {
-                    memory->flattened = contact->hardened;
-                    *shape = flat;
-                    *held = less;
-                }
-            }
-            return;
-        }
+    } else {
+        *shape = flat;
     }
-    memory->flattened = contact->hardened;
-    asperity_shape_at(cohesion, t, scale, range, (double)memory->flattened, shape);
-    if (h - shape->dent >= -range) {
-        holds = asperity_hold(shape, h - shape->dent, held) && held->energy <= 0.0;
-    }
-    memory->joined = ASPERITY_R(holds ? 1.0 : 0.0);
+    holds = asperity_hold(shape, h - shape->dent, held);
+    meets = !joined && e >= -range;
+    holds = holds && (joined || (meets && held->energy <= 0.0));
     if (!holds) {
         held->f_n = held->energy = held->presses = held->stiffer = 0.0;
     }
+    if (hardens && (holds || meets) && asperity_hold(&flat, e, &less) && less.energy <= held->energy && asperity_lost_work(memory, &less, dh) >= 0.0) {
+        memory->flattened = contact->hardened;
+        *shape = flat;
+        *held = less;
+        holds = 1;
+    }
+    memory->joined = ASPERITY_R(holds ? 1.0 : 0.0);
 }
 
 /* Whether a memory is one that an update may have left. */
 ASPERITY_FN int asperity_is_sound_cohesion(const asperity_cohesion *c) {
     const asperity_real zero = ASPERITY_R(0.0);
+    const asperity_real most = ASPERITY_R(ASPERITY_MOST);
     return asperity_is_finite(c->flattened + c->stiffness) && asperity_is_finite(c->slider[0] + c->slider[1]) && asperity_is_finite(c->f_n + c->energy) && c->flattened >= zero &&
-           c->stiffness >= zero && (c->joined == zero || c->joined == ASPERITY_R(1.0));
+           c->flattened <= most && c->stiffness >= zero && c->stiffness <= most && ASPERITY_ABS(c->slider[0]) <= most && ASPERITY_ABS(c->slider[1]) <= most &&
+           ASPERITY_ABS(c->f_n) <= most && ASPERITY_ABS(c->energy) <= most && (c->joined == zero || c->joined == ASPERITY_R(1.0));
 }
 
 /* What cohesion adds to an increment that the update has made of a contact, `contact` before and `after`; d: the tangential increment. `next` may be `memory`. Where something is no
@@ -346,7 +349,7 @@ ASPERITY_FN void asperity_cohere(
     const asperity_cohesive *cohesion, const asperity_table *t, asperity_real radius, asperity_real modulus, const asperity_state *contact, const asperity_state *after,
     const asperity_cohesion *memory, const asperity_real d[2], asperity_cohesion *next, asperity_attraction *out) {
     double force = (double)modulus * (double)radius * (double)radius, work = force * (double)radius, scale = 1.0 / ((double)modulus * (double)radius);
-    double range = (double)cohesion->range / (double)radius, lost, stiff, share, along[2], size, limit, kept, done, before;
+    double range = (double)cohesion->range / (double)radius, dh, lost, stiff, share, along[2], size, limit, kept, done, before;
     asperity_cohesion c = *memory;
     asperity_shape_of shape;
     asperity_held held;
@@ -361,8 +364,12 @@ ASPERITY_FN void asperity_cohere(
         *next = *memory;
         return;
     }
-    asperity_join(cohesion, t, scale, range, &c, after, (double)after->h - (double)contact->h, &shape, &held);
-    lost = asperity_lost_work(memory, &held, (double)after->h - (double)contact->h);
+    dh = (double)after->h - (double)contact->h;
+    if (memory->joined == ASPERITY_R(0.0) && contact->h_max == ASPERITY_R(0.0) && contact->h == ASPERITY_R(0.0)) { /* what never touched comes from where attraction begins */
+        dh += range;
+    }
+    asperity_join(cohesion, t, scale, range, &c, after, dh, &shape, &held);
+    lost = asperity_lost_work(memory, &held, dh);
     /* A stiffness that falls takes force with it, one that grows none: neither adds energy. */
     stiff = shape.along * (held.stiffer > 0.0 ? held.stiffer : 0.0);
     before = (double)memory->stiffness;
