@@ -49,3 +49,5 @@ done
 g++ -std=c++17 -O3 -march=native -fPIC -shared -Wall -Wextra -I"$work/law-copper" "$here/external/asperity_external.cpp" -o "$work/libasperity_external.so"
 "$work/venv/bin/python" "$here/tests/test_external.py" "$work/asperityplugin.so" "$work/equal" "$work/elastic" "$work/libasperity_external.so"
 "$work/venv/bin/python" "$here/external/collide.py" "$work/libasperity_external.so" "$work/equal/equal.asperity"
+# What a contact costs, once and small.
+"$work/venv/bin/python" "$root/benches/lammps_speed/speed.py" "$work/asperityplugin.so" "$work/equal/equal.asperity" "$work/speed" --spheres 1000 --ranks 1 --steps 20 --rounds 1
