@@ -34,13 +34,14 @@ impl Orientation {
         [x * cos + y * sin, y * cos - x * sin]
     }
 
-    /// A vector of the mesh's axes in the user's.
+    /// A vector of the mesh's axes in the user's; what rounding leaves across an axis is none.
     pub fn to_user(self, [x, y]: [f64; 2]) -> [f64; 2] {
         if self == Self::ALONG_X {
             return [x, y];
         }
         let [cos, sin] = self.x_axis;
-        [x * cos - y * sin, y * cos + x * sin]
+        let size = x.hypot(y);
+        [x * cos - y * sin, y * cos + x * sin].map(|part| if part.abs() <= 4.0 * f64::EPSILON * size { 0.0 } else { part })
     }
 
     /// A symmetric tensor xx, yy, zz, xy, yz, zx of the mesh's axes in the user's.
@@ -171,6 +172,7 @@ mod tests {
         let orientation = Orientation::along([0.3, -0.7]).expect("a direction");
         assert!(close(&orientation.to_user(orientation.to_mesh([0.2, 0.5])), &[0.2, 0.5]));
         assert!(close(&orientation.to_user([1.0, 0.0]), &orientation.x_axis));
+        assert_eq!(orientation.to_user(orientation.to_mesh([0.0, -0.003]))[0], 0.0);
         // A uniaxial stress along the mesh's x axis, and one with all components, whose products
         // with vectors turn with them.
         let [cos, sin] = orientation.x_axis;
