@@ -10,22 +10,14 @@ shift
 cells="$here/cells.csv"
 again=
 [ "${1:-}" != --cells ] || { again=1; shift; }
-work="${ASPERITY_LAMMPS_DIR:-$root/target/lammps}"
-program="${ASPERITY_PROGRAM:-}"
-if [ -z "$program" ]; then
-    (cd "$root" && cargo build --quiet --release)
-    program="$root/target/release/asperity"
-fi
-export ASPERITY_PROGRAM="$program"
 mkdir -p "$out"
-bash "$root/integrations/lammps/run.sh" --build
+. "$root/integrations/lammps/prepare.sh"
 "$program" law export built-in "$here/metal.toml" --for lammps --out "$out/tables/metal" >/dev/null
 "$program" law export built-in "$here/metal.toml" --set material.youngs_modulus=8e3 --for lammps --out "$out/tables/soft" >/dev/null
-export LD_LIBRARY_PATH="$work/venv/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
-"$work/venv/bin/python" "$here/press.py" "$work/asperityplugin.so" "$out/tables" "$out" "$@"
+"$python" "$here/press.py" "$work/asperityplugin.so" "$out/tables" "$out" "$@"
 if [ -n "$again" ]; then
     cells="$out/cells.csv"
     gcc -O3 -march=native -ffast-math "$here/cells.c" -o "$out/cells" -lm
     python3 "$here/cells.py" "$out/cells" "$cells"
 fi
-[ ! -e "$out/press.json" ] || "$work/venv/bin/python" "$here/figures.py" "$out" "$cells" | tee "$out/tables.md"
+[ ! -e "$out/press.json" ] || "$python" "$here/figures.py" "$out" "$cells" | tee "$out/tables.md"

@@ -28,12 +28,14 @@ PRESS, SHEAR = 0.01, 0.01
 SHEAR_MODULUS = MODULUS / (2 * (1 + NU))
 STYLES = {
     "asperity": "pair_style asperity\npair_coeff * * {table} {e} restitution 0.5",
-    "hertz-mindlin": "pair_style granular\npair_coeff * * hertz/material {e} 0.5 {nu} tangential mindlin NULL 1.0 {mu} damping tsuji",
-    "mdr": "pair_style granular\npair_coeff * * mdr {e} {nu} {y} 0.0 0.5 0.5 tangential linear_history {k_t} 0.0 {mu} damping mdr 1",
+    "hertz-mindlin": "pair_style granular\n"
+    "pair_coeff * * hertz/material {e} 0.5 {nu} tangential mindlin NULL 1.0 {mu} damping tsuji",
+    "mdr": "pair_style granular\n"
+    "pair_coeff * * mdr {e} {nu} {y} 0.0 0.5 0.5 tangential linear_history {k_t} 0.0 {mu} damping mdr 1",
 }
 
 
-def input_text(style, args, atoms):
+def input_text(style, args):
     """The input: `warm` steps in which contacts come to be, and the timed ones."""
     side = round(args.spheres ** (1 / 3))
     spacing = 2 * RADIUS - OVERLAP * RADIUS
@@ -53,7 +55,7 @@ boundary p p p
 processors * * *
 region box prism 0 {length} 0 {length} 0 {length} 0 0 0 units box
 create_box 1 box
-lattice sc {spacing ** -3 * 1.0}
+lattice sc {spacing ** -3}
 create_atoms 1 region box
 set group all diameter {2 * RADIUS}
 set group all density {DENSITY}
@@ -78,7 +80,7 @@ run {args.steps}
 def timed(style, args, launcher):
     """Seconds of Pair and of the loop, over all ranks, and contacts at the start and the end of the timed steps."""
     file = args.out / f"{style}.in"
-    file.write_text(input_text(style, args, None))
+    file.write_text(input_text(style, args))
     run = subprocess.run([*launcher, sys.executable, __file__, "--follow", str(file)], capture_output=True, text=True)
     if run.returncode != 0 or "TIMED" not in run.stdout:
         sys.exit(f"{style}: LAMMPS ended with {run.returncode}\n{run.stdout[-3000:]}{run.stderr[-2000:]}")
@@ -88,7 +90,13 @@ def timed(style, args, launcher):
     rows = re.findall(r"^ *(\d+) +(\d+) +([0-9.e+]+) +(\S+) *$", text, re.M)
     contacts = [float(row[2]) / 2 for row in rows]
     rebuilt = int(re.search(r"Neighbor list builds = (\d+)", text).group(1))
-    return {"pair": pair * args.ranks, "loop": loop * args.ranks, "contacts": sum(contacts) / len(contacts), "rebuilt": rebuilt, "pressure": float(rows[-1][3])}
+    return {
+        "pair": pair * args.ranks,
+        "loop": loop * args.ranks,
+        "contacts": sum(contacts) / len(contacts),
+        "rebuilt": rebuilt,
+        "pressure": float(rows[-1][3]),
+    }
 
 
 def follow(file):
@@ -106,7 +114,9 @@ def table_of(best, steps):
     lines = ["| law | contacts | ns a contact and step | over Hertz-Mindlin | over MDR | whole step over MDR |", "|---" * 6 + "|"]
     for style in best:
         ratio = lambda other, key="pair": f"{of(style, key) / of(other, key):.2f}" if other in best else "-"
-        lines.append(f"| {style} | {best[style]['contacts']:.0f} | {of(style, 'pair'):.0f} | {ratio('hertz-mindlin')} | {ratio('mdr')} | {ratio('mdr', 'loop')} |")
+        cells = [style, f"{best[style]['contacts']:.0f}", f"{of(style, 'pair'):.0f}"]
+        cells += [ratio("hertz-mindlin"), ratio("mdr"), ratio("mdr", "loop")]
+        lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)
 
 
@@ -133,7 +143,8 @@ def main():
     styles = args.styles.split(",")
     rounds = [{style: timed(style, args, launcher) for style in styles} for _ in range(args.rounds)]
     best = {style: min((one[style] for one in rounds), key=lambda one: one["pair"]) for style in styles}
-    (args.out / "speed.json").write_text(json.dumps({"spheres": args.spheres, "ranks": args.ranks, "steps": args.steps, "rounds": rounds}, indent=1) + "\n")
+    report = {"spheres": args.spheres, "ranks": args.ranks, "steps": args.steps, "rounds": rounds}
+    (args.out / "speed.json").write_text(json.dumps(report, indent=1) + "\n")
     print(table_of(best, args.steps))
 
 

@@ -462,9 +462,9 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: LENGTH,
         range: "-0.5 R to 0.5 R (here R is the smaller of two radii), [x, y] of such lengths, or \"full-slip\"",
-        meaning: "shear to this total delta_T, of either sign. One number is along x, and y stays as it is. With [x, y] the shear has both \
-                  components, and the hemisphere is meshed instead of its half y >= 0. With \"full-slip\" the shear \
-                  continues until points that stick carry at most 0.2 % of F_N and F_T no longer rises",
+        meaning: "shear to this total delta_T, of either sign. One number is along x, and y stays as it is. With [x, y] \
+                  the shear has both components, and the hemisphere is meshed instead of its half y >= 0. With \"full-slip\" \
+                  the shear continues until points that stick carry at most 0.2 % of F_N and F_T no longer rises",
         example: "\"full-slip\"",
         ..key("path", "shear", Components(&["full-slip"]), Optional("the segment presses, turns or releases"))
     },
@@ -506,7 +506,8 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true, or a share between 0 and 1",
-        meaning: "unload until contact is lost, or until F_N has fallen to this share of its value at the start of the segment; delta_T and the angles do not change",
+        meaning: "unload until contact is lost, or until F_N has fallen to this share of its value at the start of the \
+                  segment; delta_T and the angles do not change",
         example: "true",
         ..key("path", "release", ShareOrTrue, Optional("the segment presses or shears"))
     },

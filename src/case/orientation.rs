@@ -119,8 +119,8 @@ mod tests {
 
     fn case(path: &str, opponent: &str) -> Case {
         let text = format!(
-            "[sphere]\nradius = 2.0\n[material]\nyoungs_modulus = 1e5\npoissons_ratio = 0.3\n[material.hardening]\nlaw = \"elastic\"\n\
-             [contact]\nfriction = 0.3\n{opponent}[[path]]\nindentation = 0.02\n{path}"
+            "[sphere]\nradius = 2.0\n[material]\nyoungs_modulus = 1e5\npoissons_ratio = 0.3\n\
+             [material.hardening]\nlaw = \"elastic\"\n[contact]\nfriction = 0.3\n{opponent}[[path]]\nindentation = 0.02\n{path}"
         );
         Case::parse(&text, "case.toml", &[]).expect("a case")
     }

@@ -6,17 +6,10 @@ here="$(cd "$(dirname "$0")" && pwd)"
 root="$(cd "$here/../../.." && pwd)"
 out="${1:-$root/target/lammps/compaction}"
 [ $# -eq 0 ] || shift
-work="${ASPERITY_LAMMPS_DIR:-$root/target/lammps}"
 elements="${ELEMENTS:-6}"
 mkdir -p "$out/tables"
 
-program="${ASPERITY_PROGRAM:-}"
-if [ -z "$program" ]; then
-    (cd "$root" && cargo build --quiet --release)
-    program="$root/target/release/asperity"
-fi
-export ASPERITY_PROGRAM="$program"
-bash "$here/../run.sh" --build
+. "$root/integrations/lammps/prepare.sh"
 for material in copper steel; do
     for mu in 0.1 0.5; do
         table="$out/tables/$material-$mu"
@@ -38,6 +31,5 @@ for material in copper steel; do
         done
     done
 done
-export LD_LIBRARY_PATH="$work/venv/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
-"$work/venv/bin/python" "$here/compact.py" "$work/asperityplugin.so" "$out/tables" "$out" "$@"
+"$python" "$here/compact.py" "$work/asperityplugin.so" "$out/tables" "$out" "$@"
 echo "pictures and tables in $out"
