@@ -101,7 +101,8 @@ impl CohesionState {
     }
 }
 
-/// c by how far gamma has come from 3/2 to 4/pi, y + y (1 - y) times this in y; to 1e-5.
+/// c by how far gamma has come from 3/2 to 4/pi, y + y (1 - y) times this in y; to 1e-5
+/// (`benches/law/fit_roundness.py`).
 const ROUNDNESS: [f64; 3] = [-0.24433305, -0.04673567, -0.01232952];
 /// Gauss' places and weights for the integral of sqrt(y) f(y) from 0 to 1.
 const PLACES: [f64; 6] =
