@@ -1,4 +1,5 @@
-/* Processor time of one contact update, and of Hertz and Mindlin's with a spring cut off at mu F_N beside it, each in a loop over many contacts as in an engine. */
+/* Processor time of one contact update, alone and of several at once, and of Hertz and Mindlin's with a spring cut off at mu F_N beside them, each in a loop over many contacts as in
+ * an engine. */
 #define _POSIX_C_SOURCE 199309L
 #include "asperity_law.h"
 
@@ -37,6 +38,7 @@ static void hertz_mindlin(asperity_real spring[2], asperity_real h, const asperi
 }
 
 static asperity_state state[CONTACTS];
+static asperity_increment several[CONTACTS];
 static asperity_real spring[CONTACTS][2], depth[CONTACTS];
 
 /* h and d of step k of contact i. */
@@ -57,54 +59,82 @@ static void path(int kind, int i, int k, asperity_real *h, asperity_real d[2]) {
     }
 }
 
+static int less(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static asperity_real sum = 0;
+
+/* A path of all contacts by the update of one. */
+static void alone(int kind) {
+    int i, k;
+    for (k = 0; k < STEPS; k++) {
+        for (i = 0; i < CONTACTS; i++) {
+            asperity_response out;
+            asperity_real h, d[2];
+            path(kind, i, k, &h, d);
+            asperity_update(&asperity_law, ASPERITY_R(1.0), ASPERITY_R(1.0), &state[i], h, d, &state[i], &out, NULL);
+            sum += out.f_n + out.f_t[0] + out.plastic;
+        }
+    }
+}
+
+/* The same by that of several. */
+static void together(int kind) {
+    int i, k;
+    for (k = 0; k < STEPS; k++) {
+        for (i = 0; i < CONTACTS; i++) {
+            several[i].state = several[i].next = &state[i];
+            several[i].radius = ASPERITY_R(1.0);
+            path(kind, i, k, &several[i].h, several[i].d);
+        }
+        asperity_update_many(&asperity_law, ASPERITY_R(1.0), CONTACTS, several);
+        for (i = 0; i < CONTACTS; i++) {
+            sum += several[i].out.f_n + several[i].out.f_t[0] + several[i].out.plastic;
+        }
+    }
+}
+
+/* And by Hertz and Mindlin. */
+static void beside(int kind) {
+    int i, k;
+    for (k = 0; k < STEPS; k++) {
+        for (i = 0; i < CONTACTS; i++) {
+            asperity_real h, d[2], f[3];
+            path(kind, i, k, &h, d);
+            hertz_mindlin(spring[i], h, d, asperity_law.friction, f);
+            sum += f[0] + f[1];
+        }
+    }
+}
+
 int main(int argc, char **argv) {
     static const char *const names[] = {"press with shear", "shear at constant depth", "press, unload, reverse", "open gap over a dent", "open gap, never touched"};
-    int repeats = argc > 1 ? atoi(argv[1]) : 9, kind, r, i, k;
-    asperity_real sum = 0;
-    printf("%-26s %12s %16s %8s\n", "ns an update (median)", "this law", "Hertz-Mindlin", "ratio");
+    static void (*const ways[])(int) = {alone, together, beside};
+    int repeats = argc > 1 ? atoi(argv[1]) : 9, kind, way, r, i;
+    repeats = repeats < 64 ? repeats : 64;
+    printf("%d contacts at once; ns an update (median)\n%-26s %8s %8s %16s %8s %8s\n", ASPERITY_WIDTH, "", "alone", "at once", "Hertz-Mindlin", "alone/", "at once/");
     for (kind = 0; kind < 5; kind++) {
-        double law[64], hertz[64];
-        for (r = 0; r < repeats && r < 64; r++) {
-            double from;
-            for (i = 0; i < CONTACTS; i++) {
-                depth[i] = ASPERITY_R(0.0005) * (ASPERITY_R(1.0) + ASPERITY_R(60.0) * ASPERITY_R(i) / ASPERITY_R(CONTACTS));
-                memset(&state[i], 0, sizeof state[i]);
-                spring[i][0] = spring[i][1] = 0;
-            }
-            from = seconds();
-            for (k = 0; k < STEPS; k++) {
+        double took[3][64];
+        for (r = 0; r < repeats; r++) {
+            for (way = 0; way < 3; way++) {
+                double from;
                 for (i = 0; i < CONTACTS; i++) {
-                    asperity_response out;
-                    asperity_real h, d[2];
-                    path(kind, i, k, &h, d);
-                    asperity_update(&asperity_law, ASPERITY_R(1.0), ASPERITY_R(1.0), &state[i], h, d, &state[i], &out, NULL);
-                    sum += out.f_n + out.f_t[0] + out.plastic;
+                    depth[i] = ASPERITY_R(0.0005) * (ASPERITY_R(1.0) + ASPERITY_R(60.0) * ASPERITY_R(i) / ASPERITY_R(CONTACTS));
+                    memset(&state[i], 0, sizeof state[i]);
+                    spring[i][0] = spring[i][1] = 0;
                 }
+                from = seconds();
+                ways[way](kind);
+                took[way][r] = (seconds() - from) * 1e9 / CONTACTS / STEPS;
             }
-            law[r] = seconds() - from;
-            from = seconds();
-            for (k = 0; k < STEPS; k++) {
-                for (i = 0; i < CONTACTS; i++) {
-                    asperity_real h, d[2], f[3];
-                    path(kind, i, k, &h, d);
-                    hertz_mindlin(spring[i], h, d, asperity_law.friction, f);
-                    sum += f[0] + f[1];
-                }
-            }
-            hertz[r] = seconds() - from;
         }
-        {
-            int n = r, a, b;
-            for (a = 0; a < n; a++) {
-                for (b = a + 1; b < n; b++) {
-                    if (law[b] < law[a]) { double t = law[a]; law[a] = law[b]; law[b] = t; }
-                    if (hertz[b] < hertz[a]) { double t = hertz[a]; hertz[a] = hertz[b]; hertz[b] = t; }
-                }
-            }
-            law[0] = law[n / 2] * 1e9 / CONTACTS / STEPS;
-            hertz[0] = hertz[n / 2] * 1e9 / CONTACTS / STEPS;
-            printf("%-26s %12.1f %16.1f %8.1f\n", names[kind], law[0], hertz[0], law[0] / hertz[0]);
+        for (way = 0; way < 3; way++) {
+            qsort(took[way], (size_t)repeats, sizeof took[way][0], less);
         }
+        r = repeats / 2;
+        printf("%-26s %8.1f %8.1f %16.1f %8.1f %8.1f\n", names[kind], took[0][r], took[1][r], took[2][r], took[0][r] / took[2][r], took[1][r] / took[2][r]);
     }
     printf("state of a contact: %d numbers (sum %g)\n", (int)(sizeof(asperity_state) / sizeof(asperity_real)), (double)sum);
     return 0;

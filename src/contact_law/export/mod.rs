@@ -14,6 +14,17 @@ use super::table::{LEVELS, PLACES, ROWS};
 use super::turning_constants::{LEVERS, LEVERS_SQUARED, TWIST_FOLLOWS, TWIST_LEVER, TWIST_STIFF, TurningConstants};
 
 const HEADER: &str = include_str!("asperity_contact.h");
+/// What it is made of: the update's files are in it twice, for one contact and for several.
+const PARTS: [(&str, &str); 8] = [
+    ("asperity_series.h", include_str!("asperity_series.h")),
+    ("asperity_sliders.h", include_str!("asperity_sliders.h")),
+    ("asperity_guess.h", include_str!("asperity_guess.h")),
+    ("asperity_move.h", include_str!("asperity_move.h")),
+    ("asperity_wide.h", include_str!("asperity_wide.h")),
+    ("asperity_wide_names.h", include_str!("asperity_wide_names.h")),
+    ("asperity_wide_end.h", include_str!("asperity_wide_end.h")),
+    ("asperity_file.h", include_str!("asperity_file.h")),
+];
 const HEADER_TURNING: &str = include_str!("asperity_turning.h");
 const HEADER_COHESION: &str = include_str!("asperity_cohesion.h");
 const HEADER_3D: &str = include_str!("asperity_contact3d.h");
@@ -41,7 +52,9 @@ pub fn header() -> String {
     ];
     let numbers = numbers.map(|(name, value)| (name, format!("{value:?}")));
     let version = [("VERSION", env!("CARGO_PKG_VERSION").to_owned())];
-    fill(HEADER, version.into_iter().chain(sizes).chain(numbers).chain(of_a_twist()))
+    let whole =
+        PARTS.iter().fold(HEADER.to_owned(), |text, (name, part)| text.replace(&format!("#include \"{name}\"\n"), part));
+    fill(&whole, version.into_iter().chain(sizes).chain(numbers).chain(of_a_twist()))
 }
 
 /// What the update needs of a twist.
