@@ -28,6 +28,8 @@
 #include "asperity_cohesion.h"
 #include "asperity_turning.h"
 
+#define ASPERITY_TOGETHER 8 /* contacts that asperity_spheres_many() takes in one go */
+
 /* Flags of asperity_forces. */
 enum {
     ASPERITY_TOUCHES = 1,
@@ -310,94 +312,159 @@ ASPERITY_FN asperity_real asperity_allowed(const asperity_real f[2], const asper
     return share < ASPERITY_R(1.0) ? share : ASPERITY_R(1.0);
 }
 
-/* What both kinds of contact do once normal, lever arms and relative velocity are known: n from j to i, v that of i's point of contact relative to j's, `turns` the spin of i
- * relative to j. `turning` is NULL where twist and roll are left out, `cohesion` where that is. */
-ASPERITY_FN void asperity_contact_forces(
-    const asperity_law3d *law, asperity_real radius, asperity_real mass, asperity_real overlap, const asperity_real n[3], const asperity_real v[3],
-    const asperity_real spin[3], const asperity_real turns[3], asperity_real arm_i, asperity_real arm_j, asperity_real dt, const asperity_contact *before, asperity_contact *after,
-    const asperity_turning *turning, asperity_turning *turning_after, const asperity_cohesion *cohesion, asperity_cohesion *cohesion_after, asperity_forces *out) {
-    asperity_contact c = *before;
+/* A contact in a step: what it sees of its bodies, and the answer of the update. */
+typedef struct asperity_meeting {
+    asperity_real radius, mass, overlap, arm_i, arm_j; /* radius: of the table's sphere */
+    asperity_real n[3], v[3], spin[3], turns[3];       /* n from j to i; v of i's point of contact relative to j's; turns: spin of i relative to j */
+    asperity_real e1[3], e2[3], axis[2], along[2], d[2], turn[3]; /* frame; v along the plane; increments of the update */
+    asperity_state state; /* after the update */
     asperity_cohesion joined;
-    asperity_attraction pull;
-    asperity_moments moments;
     asperity_response answer;
-    asperity_real e1[3], e2[3], d[2], along[2], share = law->table->share, approaching = -asperity_dot(v, n), tangential[3], turn[3], f_n, factor, dashpot = ASPERITY_R(0.0);
+    asperity_moments moments;
+    asperity_attraction pull;
+} asperity_meeting;
+
+/* Normal, lever arms and relative velocity of two spheres; the flag of what has no answer, or 0. */
+ASPERITY_FN int asperity_meet_sphere(const asperity_law3d *law, const asperity_body *i, const asperity_body *j, asperity_meeting *m) {
+    asperity_real across_i[3], across_j[3], distance;
     int k;
-    memset(out, 0, sizeof *out);
-    out->overlap = overlap;
-    asperity_carry(c.axis, spin, dt, n, e1, e2);
-    along[0] = asperity_dot(v, e1);
-    along[1] = asperity_dot(v, e2);
-    d[0] = share * along[0] * dt;
-    d[1] = share * along[1] * dt;
-    memset(&moments, 0, sizeof moments);
+    if (law->table->plane) {
+        return ASPERITY_WRONG_TABLE;
+    }
+    for (k = 0; k < 3; k++) {
+        m->n[k] = i->position[k] - j->position[k];
+        m->spin[k] = ASPERITY_R(0.5) * (i->spin[k] + j->spin[k]);
+        m->turns[k] = i->spin[k] - j->spin[k];
+    }
+    distance = ASPERITY_SQRT(asperity_dot(m->n, m->n));
+    if (!asperity_is_finite(distance) || !(distance > ASPERITY_R(0.0))) {
+        return ASPERITY_NO_NUMBER;
+    }
+    m->overlap = i->radius + j->radius - distance;
+    m->arm_i = i->radius - ASPERITY_R(0.5) * m->overlap;
+    m->arm_j = j->radius - ASPERITY_R(0.5) * m->overlap;
+    m->radius = asperity_table_radius(law->table, i->radius * j->radius / (i->radius + j->radius));
+    m->mass = asperity_effective_mass(i->mass, j->mass);
+    for (k = 0; k < 3; k++) {
+        m->n[k] /= distance;
+    }
+    asperity_cross(i->spin, m->n, across_i);
+    asperity_cross(j->spin, m->n, across_j);
+    for (k = 0; k < 3; k++) {
+        m->v[k] = i->velocity[k] - j->velocity[k] - m->arm_i * across_i[k] - m->arm_j * across_j[k];
+    }
+    return 0;
+}
+
+/* Before the update: the frame, and what the points of contact move by in it. */
+ASPERITY_FN void asperity_set_out(const asperity_law3d *law, asperity_real dt, const asperity_contact *before, int turning, asperity_meeting *m) {
+    asperity_real share = law->table->share;
+    m->axis[0] = before->axis[0];
+    m->axis[1] = before->axis[1];
+    asperity_carry(m->axis, m->spin, dt, m->n, m->e1, m->e2);
+    m->along[0] = asperity_dot(m->v, m->e1);
+    m->along[1] = asperity_dot(m->v, m->e2);
+    m->d[0] = share * m->along[0] * dt;
+    m->d[1] = share * m->along[1] * dt;
     if (turning) {
-        turn[0] = share * asperity_dot(turns, e1) * dt;
-        turn[1] = share * asperity_dot(turns, e2) * dt;
-        turn[2] = share * asperity_dot(turns, n) * dt;
-        asperity_update_turning(law->table, radius, law->modulus, &before->state, turning, share * overlap, d, turn, &c.state, turning_after, &answer, &moments, NULL);
+        m->turn[0] = share * asperity_dot(m->turns, m->e1) * dt;
+        m->turn[1] = share * asperity_dot(m->turns, m->e2) * dt;
+        m->turn[2] = share * asperity_dot(m->turns, m->n) * dt;
+    }
+}
+
+/* The update. `turning` is NULL where twist and roll are left out, `cohesion` where that is. */
+ASPERITY_FN void asperity_press(
+    const asperity_law3d *law, const asperity_contact *before, const asperity_turning *turning, asperity_turning *turning_after, const asperity_cohesion *cohesion,
+    asperity_meeting *m) {
+    asperity_real h = law->table->share * m->overlap;
+    if (turning) {
+        asperity_update_turning(law->table, m->radius, law->modulus, &before->state, turning, h, m->d, m->turn, &m->state, turning_after, &m->answer, &m->moments, NULL);
     } else {
-        asperity_update(law->table, radius, law->modulus, &c.state, share * overlap, d, &c.state, &answer, NULL);
+        asperity_update(law->table, m->radius, law->modulus, &before->state, h, m->d, &m->state, &m->answer, NULL);
     }
     if (cohesion) {
-        asperity_cohere(&law->cohesion, law->table, radius, law->modulus, &before->state, &c.state, cohesion, d, &joined, &pull);
-        if (!asperity_is_finite(pull.f_n)) {
-            answer.f_n = pull.f_n;
-        }
+        asperity_cohere(&law->cohesion, law->table, m->radius, law->modulus, &before->state, &m->state, cohesion, m->d, &m->joined, &m->pull);
     }
-    if (!asperity_is_finite(answer.f_n) || !asperity_is_finite(answer.f_t[0] + answer.f_t[1])) {
+}
+
+/* The share of the dashpot, and what it takes; F_N with it. */
+ASPERITY_FN asperity_real asperity_damp(const asperity_law3d *law, asperity_real dt, asperity_meeting *m, asperity_forces *out) {
+    asperity_real f_n = m->answer.f_n, approaching = -asperity_dot(m->v, m->n), factor, dashpot, d[2];
+    if (!(f_n > ASPERITY_R(0.0)) || !(law->damping > ASPERITY_R(0.0))) {
+        return f_n;
+    }
+    factor = law->damping * ASPERITY_SQRT(m->mass * m->answer.stiffness * law->table->share);
+    dashpot = factor * approaching;
+    dashpot = dashpot < -f_n ? -f_n : dashpot; /* never a pull */
+    out->damped = dashpot * approaching * dt;
+    f_n += dashpot;
+    if (law->tangential > ASPERITY_R(0.0)) {
+        d[0] = law->tangential * factor * m->along[0];
+        d[1] = law->tangential * factor * m->along[1];
+        factor = asperity_allowed(m->answer.f_t, d, law->table->friction * (f_n < m->answer.f_n ? f_n : m->answer.f_n));
+        m->answer.f_t[0] += factor * d[0];
+        m->answer.f_t[1] += factor * d[1];
+        out->damped += factor * (d[0] * m->along[0] + d[1] * m->along[1]) * dt;
+    }
+    return f_n;
+}
+
+/* After the update: forces, and the memories. */
+ASPERITY_FN void asperity_settle(
+    const asperity_law3d *law, asperity_real dt, const asperity_contact *before, asperity_contact *after, int turning, asperity_cohesion *cohesion_after, asperity_meeting *m,
+    asperity_forces *out) {
+    asperity_real share = law->table->share, tangential[3], lever[3], plastic, slip, f_n, touches;
+    int k;
+    if (cohesion_after && !asperity_is_finite(m->pull.f_n)) {
+        m->answer.f_n = m->pull.f_n;
+    }
+    if (!asperity_is_finite(m->answer.f_n) || !asperity_is_finite(m->answer.f_t[0] + m->answer.f_t[1])) {
         asperity_no_answer(ASPERITY_NO_NUMBER, before, after, out);
         return;
     }
     /* The law's work is that of h and d: of what the centres move, `share`. */
-    c.plastic += answer.plastic / share;
-    c.slip += (answer.friction + moments.lost) / share;
-    out->stored = (answer.stored + moments.stored) / share;
-    f_n = answer.f_n;
-    if (f_n > ASPERITY_R(0.0) && law->damping > ASPERITY_R(0.0)) {
-        factor = law->damping * ASPERITY_SQRT(mass * answer.stiffness * share);
-        dashpot = factor * approaching;
-        dashpot = dashpot < -f_n ? -f_n : dashpot; /* never a pull */
-        out->damped = dashpot * approaching * dt;
-        f_n += dashpot;
-        if (law->tangential > ASPERITY_R(0.0)) {
-            d[0] = law->tangential * factor * along[0];
-            d[1] = law->tangential * factor * along[1];
-            factor = asperity_allowed(answer.f_t, d, law->table->friction * (f_n < answer.f_n ? f_n : answer.f_n));
-            answer.f_t[0] += factor * d[0];
-            answer.f_t[1] += factor * d[1];
-            out->damped += factor * (d[0] * along[0] + d[1] * along[1]) * dt;
-        }
-    }
-    if (cohesion) {
-        f_n += pull.f_n;
-        answer.f_t[0] += pull.f_t[0];
-        answer.f_t[1] += pull.f_t[1];
-        c.slip += pull.slip / share;
-        out->stored += pull.stored / share;
-        out->parted = pull.lost / share;
+    plastic = before->plastic + m->answer.plastic / share;
+    slip = before->slip + (turning ? m->answer.friction + m->moments.lost : m->answer.friction) / share;
+    out->overlap = m->overlap;
+    out->stored = (turning ? m->answer.stored + m->moments.stored : m->answer.stored) / share;
+    out->damped = out->parted = ASPERITY_R(0.0);
+    touches = m->answer.f_n;
+    f_n = asperity_damp(law, dt, m, out);
+    if (cohesion_after) {
+        f_n += m->pull.f_n;
+        m->answer.f_t[0] += m->pull.f_t[0];
+        m->answer.f_t[1] += m->pull.f_t[1];
+        slip += m->pull.slip / share;
+        out->stored += m->pull.stored / share;
+        out->parted = m->pull.lost / share;
     }
     out->f_n = f_n;
-    out->f_t = ASPERITY_SQRT(answer.f_t[0] * answer.f_t[0] + answer.f_t[1] * answer.f_t[1]);
-    out->flags = (answer.f_n > ASPERITY_R(0.0) ? ASPERITY_TOUCHES : 0) | (asperity_out_of_range(law->table, &c.state) ? ASPERITY_OUT_OF_RANGE : 0) |
-                 (cohesion && joined.joined > ASPERITY_R(0.0) ? ASPERITY_HOLDS : 0);
+    out->f_t = ASPERITY_SQRT(m->answer.f_t[0] * m->answer.f_t[0] + m->answer.f_t[1] * m->answer.f_t[1]);
+    out->flags = (touches > ASPERITY_R(0.0) ? ASPERITY_TOUCHES : 0) | (asperity_out_of_range(law->table, &m->state) ? ASPERITY_OUT_OF_RANGE : 0) |
+                 (cohesion_after && m->joined.joined > ASPERITY_R(0.0) ? ASPERITY_HOLDS : 0);
     for (k = 0; k < 3; k++) {
-        tangential[k] = -(answer.f_t[0] * e1[k] + answer.f_t[1] * e2[k]);
-        out->force_i[k] = f_n * n[k] + tangential[k];
+        tangential[k] = -(m->answer.f_t[0] * m->e1[k] + m->answer.f_t[1] * m->e2[k]);
+        out->force_i[k] = f_n * m->n[k] + tangential[k];
         out->force_j[k] = -out->force_i[k];
     }
-    asperity_cross(n, tangential, turn);
+    asperity_cross(m->n, tangential, lever);
     for (k = 0; k < 3; k++) {
-        out->torque_i[k] = -arm_i * turn[k];
-        out->torque_j[k] = -arm_j * turn[k];
+        out->torque_i[k] = -m->arm_i * lever[k];
+        out->torque_j[k] = -m->arm_j * lever[k];
         if (turning) {
-            out->torque_i[k] -= moments.m_roll[0] * e1[k] + moments.m_roll[1] * e2[k] + moments.m_twist * n[k];
-            out->torque_j[k] += moments.m_roll[0] * e1[k] + moments.m_roll[1] * e2[k] + moments.m_twist * n[k];
+            asperity_real moment = m->moments.m_roll[0] * m->e1[k] + m->moments.m_roll[1] * m->e2[k] + m->moments.m_twist * m->n[k];
+            out->torque_i[k] -= moment;
+            out->torque_j[k] += moment;
         }
     }
-    *after = c;
-    if (cohesion) {
-        *cohesion_after = joined;
+    after->state = m->state;
+    after->axis[0] = m->axis[0];
+    after->axis[1] = m->axis[1];
+    after->plastic = plastic;
+    after->slip = slip;
+    if (cohesion_after) {
+        *cohesion_after = m->joined;
     }
 }
 
@@ -406,36 +473,53 @@ ASPERITY_FN void asperity_contact_forces(
 ASPERITY_FN void asperity_spheres_cohesive(
     const asperity_law3d *law, const asperity_body *i, const asperity_body *j, asperity_real dt, const asperity_contact *before, asperity_contact *after,
     const asperity_turning *turning, asperity_turning *turning_after, const asperity_cohesion *cohesion, asperity_cohesion *cohesion_after, asperity_forces *out) {
-    asperity_real n[3], spin[3], turns[3], v[3], across_i[3], across_j[3], distance, overlap, arm_i, arm_j;
-    int k;
-    if (law->table->plane) {
-        asperity_no_answer(ASPERITY_WRONG_TABLE, before, after, out);
+    asperity_meeting m;
+    int flag = asperity_meet_sphere(law, i, j, &m);
+    if (flag) {
+        asperity_no_answer(flag, before, after, out);
         return;
     }
-    for (k = 0; k < 3; k++) {
-        n[k] = i->position[k] - j->position[k];
-        spin[k] = ASPERITY_R(0.5) * (i->spin[k] + j->spin[k]);
-        turns[k] = i->spin[k] - j->spin[k];
+    asperity_set_out(law, dt, before, turning != NULL, &m);
+    asperity_press(law, before, turning, turning_after, cohesion, &m);
+    asperity_settle(law, dt, before, after, turning != NULL, cohesion ? cohesion_after : NULL, &m, out);
+}
+
+/* Two spheres that meet, for asperity_spheres_many(). `after` may be `before`; turning and cohesion change in place, and are NULL where they are left out. */
+typedef struct asperity_pair {
+    const asperity_body *i, *j;
+    const asperity_contact *before;
+    asperity_contact *after;
+    asperity_turning *turning;
+    asperity_cohesion *cohesion;
+    asperity_forces out;
+} asperity_pair;
+
+/* Many pairs of one law, each by itself. No two share a memory. */
+ASPERITY_FN void asperity_spheres_many(const asperity_law3d *law, asperity_real dt, int count, asperity_pair *pairs) {
+    asperity_meeting meetings[ASPERITY_TOGETHER];
+    int flags[ASPERITY_TOGETHER], first, k;
+    for (first = 0; first < count; first += ASPERITY_TOGETHER) {
+        int size = count - first < ASPERITY_TOGETHER ? count - first : ASPERITY_TOGETHER;
+        asperity_pair *some = pairs + first;
+        for (k = 0; k < size; k++) {
+            flags[k] = asperity_meet_sphere(law, some[k].i, some[k].j, &meetings[k]);
+            if (!flags[k]) {
+                asperity_set_out(law, dt, some[k].before, some[k].turning != NULL, &meetings[k]);
+            }
+        }
+        for (k = 0; k < size; k++) {
+            if (!flags[k]) {
+                asperity_press(law, some[k].before, some[k].turning, some[k].turning, some[k].cohesion, &meetings[k]);
+            }
+        }
+        for (k = 0; k < size; k++) {
+            if (flags[k]) {
+                asperity_no_answer(flags[k], some[k].before, some[k].after, &some[k].out);
+            } else {
+                asperity_settle(law, dt, some[k].before, some[k].after, some[k].turning != NULL, some[k].cohesion, &meetings[k], &some[k].out);
+            }
+        }
     }
-    distance = ASPERITY_SQRT(asperity_dot(n, n));
-    if (!asperity_is_finite(distance) || !(distance > ASPERITY_R(0.0))) {
-        asperity_no_answer(ASPERITY_NO_NUMBER, before, after, out);
-        return;
-    }
-    overlap = i->radius + j->radius - distance;
-    arm_i = i->radius - ASPERITY_R(0.5) * overlap;
-    arm_j = j->radius - ASPERITY_R(0.5) * overlap;
-    for (k = 0; k < 3; k++) {
-        n[k] /= distance;
-    }
-    asperity_cross(i->spin, n, across_i);
-    asperity_cross(j->spin, n, across_j);
-    for (k = 0; k < 3; k++) {
-        v[k] = i->velocity[k] - j->velocity[k] - arm_i * across_i[k] - arm_j * across_j[k];
-    }
-    asperity_contact_forces(
-        law, asperity_table_radius(law->table, i->radius * j->radius / (i->radius + j->radius)), asperity_effective_mass(i->mass, j->mass), overlap, n, v, spin, turns, arm_i, arm_j, dt, before, after, turning,
-        turning_after, cohesion, cohesion_after, out);
 }
 
 /* Two spheres of one material that twist and roll on each other. */
@@ -456,29 +540,37 @@ ASPERITY_FN void asperity_spheres(
 ASPERITY_FN void asperity_sphere_wall_cohesive(
     const asperity_law3d *law, const asperity_body *i, const asperity_wall *wall, asperity_real dt, const asperity_contact *before, asperity_contact *after,
     const asperity_turning *turning, asperity_turning *turning_after, const asperity_cohesion *cohesion, asperity_cohesion *cohesion_after, asperity_forces *out) {
-    asperity_real spin[3], turns[3], v[3], across_i[3], across_wall[3], from[3], distance, arm;
+    asperity_real across_i[3], across_wall[3], from[3], distance, arm;
+    asperity_meeting m;
     int k;
     if (!law->table->plane) {
         asperity_no_answer(ASPERITY_WRONG_TABLE, before, after, out);
         return;
     }
     for (k = 0; k < 3; k++) {
+        m.n[k] = wall->normal[k];
         from[k] = i->position[k] - wall->point[k];
-        spin[k] = ASPERITY_R(0.5) * (i->spin[k] + wall->spin[k]);
-        turns[k] = i->spin[k] - wall->spin[k];
+        m.spin[k] = ASPERITY_R(0.5) * (i->spin[k] + wall->spin[k]);
+        m.turns[k] = i->spin[k] - wall->spin[k];
     }
-    distance = asperity_dot(from, wall->normal);
+    distance = asperity_dot(from, m.n);
     arm = distance < i->radius ? distance : i->radius;
     for (k = 0; k < 3; k++) {
-        from[k] -= arm * wall->normal[k];
+        from[k] -= arm * m.n[k];
     }
-    asperity_cross(i->spin, wall->normal, across_i);
+    asperity_cross(i->spin, m.n, across_i);
     asperity_cross(wall->spin, from, across_wall);
     for (k = 0; k < 3; k++) {
-        v[k] = i->velocity[k] - arm * across_i[k] - wall->velocity[k] - across_wall[k];
+        m.v[k] = i->velocity[k] - arm * across_i[k] - wall->velocity[k] - across_wall[k];
     }
-    asperity_contact_forces(law, i->radius / law->table->effective_radius, asperity_damped_mass(i->mass), i->radius - distance, wall->normal, v, spin, turns, arm, ASPERITY_R(0.0), dt, before, after,
-        turning, turning_after, cohesion, cohesion_after, out);
+    m.radius = i->radius / law->table->effective_radius;
+    m.mass = asperity_damped_mass(i->mass);
+    m.overlap = i->radius - distance;
+    m.arm_i = arm;
+    m.arm_j = ASPERITY_R(0.0);
+    asperity_set_out(law, dt, before, turning != NULL, &m);
+    asperity_press(law, before, turning, turning_after, cohesion, &m);
+    asperity_settle(law, dt, before, after, turning != NULL, cohesion ? cohesion_after : NULL, &m, out);
 }
 
 /* A sphere that twists and rolls on a rigid plane. */
