@@ -49,7 +49,8 @@ struct Memories {
     return slot;
   }
 
-  int append(const asperity_contact &one, const asperity_turning &turned, const asperity_cohesion &joined, char joins, const Way &at)
+  int append(const asperity_contact &one, const asperity_turning &turned, const asperity_cohesion &joined, char joins,
+             const Way &at)
   {
     contact.push_back(one);
     way.push_back(at);

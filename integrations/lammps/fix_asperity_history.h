@@ -83,7 +83,7 @@ class FixAsperityHistory : public Fix {
     double least = INFINITY;
     for (const Known &known : rows[i]) {
       if (known.partner != atom->tag[j]) continue;
-      const double off = off_by(known.slot, way(i, j));
+      const double off = between(memories.way[known.slot], way(i, j));
       if (best < 0 || off < least) {
         best = known.slot;
         least = off;
@@ -119,6 +119,7 @@ class FixAsperityHistory : public Fix {
     size_t count = 0;
     for (int ii = 0; ii < list->inum; ii++) count += list->numneigh[list->ilist[ii]];
     slots.assign(count, -1);
+    find_ways(list);
     int *mine = slots.data();
     for (int ii = 0; ii < list->inum; ii++) {
       const int i = list->ilist[ii];
@@ -269,11 +270,7 @@ class FixAsperityHistory : public Fix {
     return {sign * (x[j][0] - x[i][0]), sign * (x[j][1] - x[i][1]), sign * (x[j][2] - x[i][2])};
   }
 
-  // By how much, squared, a contact that had a memory's way has moved if it has this one now. A restart file has no ways: there
-  // the nearest is meant.
-  double off_by(int slot, const Way &now) const { return between(memories.way[slot], now); }
-
-  // Another image's contact is none of this one's.
+  // By how much, squared, a contact may have moved since the list was made before: less than to the next image.
   double most_off() const
   {
     double shortest = INFINITY;
@@ -282,18 +279,46 @@ class FixAsperityHistory : public Fix {
     return 0.25 * shortest * shortest;
   }
 
+  // Contacts from a restart file, the deepest first, are those with the nearest images.
+  void find_ways(const NeighList *list)
+  {
+    bool wanted = false;
+    for (int i = 0; i < atom->nlocal; i++)
+      for (const Known &known : rows[i]) wanted = wanted || memories.way[known.slot] == Way{};
+    if (!wanted) return;
+    std::vector<std::vector<std::pair<tagint, Way>>> around(atom->nlocal);
+    for (int ii = 0; ii < list->inum; ii++) {
+      const int i = list->ilist[ii];
+      for (int jj = 0; jj < list->numneigh[i]; jj++) {
+        const int j = list->firstneigh[i][jj] & NEIGHMASK;
+        around[i].emplace_back(atom->tag[j], way(i, j));
+        if (j < atom->nlocal) around[j].emplace_back(atom->tag[i], way(i, j));
+      }
+    }
+    const auto nearer = [](const auto &one, const auto &other) { return between(one.second, {}) < between(other.second, {}); };
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (rows[i].empty()) continue;
+      std::stable_sort(around[i].begin(), around[i].end(), nearer);
+      for (const Known &known : rows[i])
+        for (auto &[partner, there] : around[i]) {
+          if (memories.way[known.slot] != Way{} || partner != known.partner) continue;
+          std::swap(memories.way[known.slot], there);
+          partner = 0;    // taken
+        }
+    }
+  }
+
   void match_row(int i, const int *neighbours, int count, int *mine) const
   {
     const double most = most_off();
     for (const Known &known : rows[i]) {
-      const bool is_new = memories.way[known.slot] == Way{};
-      double least = INFINITY;
+      double least = most;
       int best = -1;
       for (int jj = 0; jj < count; jj++) {
         const int j = neighbours[jj] & NEIGHMASK;
         if (atom->tag[j] != known.partner || mine[jj] >= 0) continue;
-        const double off = off_by(known.slot, way(i, j));
-        if (off >= least || (off >= most && !is_new)) continue;
+        const double off = between(memories.way[known.slot], way(i, j));
+        if (off >= least) continue;
         least = off;
         best = jj;
       }

@@ -162,7 +162,8 @@ class PairAsperity : public Pair {
       }
     if (out.flags & ASPERITY_OUT_OF_RANGE) outside += j < nlocal ? 1.0 : 0.5;
     if (evflag)
-      ev_tally_xyz(i, j, nlocal, 0, out.stored, 0.0, fi[0], fi[1], fi[2], x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]);
+      ev_tally_xyz(i, j, nlocal, 0, out.stored, 0.0, fi[0], fi[1], fi[2],
+                   x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]);
   }
 
   // What it dissipated, and whether its memory is kept.
@@ -335,6 +336,7 @@ class PairAsperity : public Pair {
     const double dt = advance ? update->dt : 0.0;
     const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
     double outside = 0.0;
+    filled = 0;    // an error may have left some
     if (rebuilt && masses.any()) {
       masses.look();
       comm->forward_comm(this);
