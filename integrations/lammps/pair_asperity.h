@@ -10,6 +10,16 @@ class PairAsperity : public Pair {
   static constexpr const char *HISTORY = "ASPERITY_HISTORY";
   static constexpr const char *COEFF =
       "pair_coeff I J TABLE E [restitution e] [tangential f] [cohesion W [range Z]] [plane-for-pair] [changed]";
+  static constexpr int BATCH = 64;    // contacts that go through the law together
+
+  // A contact of the batch: its spheres, its entry in the list, and what it had dissipated.
+  struct Entry {
+    int i, j, entry, slot;
+    bool first, begins;    // whether i is the first of the two, and whether a memory begins
+    const Law *law;
+    double plastic, slip;
+  };
+
   std::vector<std::vector<std::shared_ptr<Law>>> laws;
   FixAsperityHistory *history = nullptr;
   Masses masses;
@@ -17,6 +27,13 @@ class PairAsperity : public Pair {
   bool cohesive = false, ranged = false;    // whether some have cohesion, and such as reaches over a gap
   double largest = 0.0;           // greatest radius that the user promises
   std::vector<double> radii;      // greatest radius of each type that the cutoffs are made for
+  std::vector<asperity_body> bodies;    // owned and ghosts
+  Entry batch[BATCH];
+  int filled = 0, place[BATCH];         // place: of a contact of the batch among the pairs, which stand law by law
+  asperity_pair pairs[BATCH];
+  asperity_contact fresh[BATCH];        // memories of contacts that begin, and those that a set-up does not keep
+  asperity_turning fresh_turning[BATCH];
+  asperity_cohesion fresh_cohesion[BATCH];
 
   void allocate()
   {
@@ -29,25 +46,10 @@ class PairAsperity : public Pair {
     laws.assign(n, std::vector<std::shared_ptr<Law>>(n));
   }
 
-  // The forces of i and j from a memory; particles in the order of their IDs, so that no exchange ever turns the memory round.
-  // Whether i is the first of the two.
-  bool forces(int i, int j, double dt, const asperity_contact &before, asperity_contact &after, asperity_turning &turned,
-              asperity_cohesion &joined, asperity_forces &out)
+  [[noreturn]] void no_answer(int i, int j)
   {
-    asperity_body a, b;
-    const bool first = atom->tag[i] < atom->tag[j];
-    fill(a, atom, masses, first ? i : j);
-    fill(b, atom, masses, first ? j : i);
-    asperity_turning *memory = turning ? &turned : nullptr;
-    const Law &law = *laws[atom->type[i]][atom->type[j]];
-    if (law.coheres())
-      asperity_spheres_cohesive(&law.law, &a, &b, dt, &before, &after, memory, memory, &joined, &joined, &out);
-    else
-      asperity_spheres_turning(&law.law, &a, &b, dt, &before, &after, memory, memory, &out);
-    if (out.flags & ASPERITY_NO_NUMBER)
-      error->one(FLERR, "pair_style asperity: there is no force between spheres {} and {}: their centres coincide, or a place, "
-                        "a velocity or the memory of the contact is no number", atom->tag[i], atom->tag[j]);
-    return first;
+    error->one(FLERR, "pair_style asperity: there is no force between spheres {} and {}: their centres coincide, or a place, "
+                      "a velocity or the memory of the contact is no number", atom->tag[i], atom->tag[j]);
   }
 
   // A sphere that is larger than any that was known when the cutoffs were made would have contacts which nobody looks for.
@@ -59,48 +61,131 @@ class PairAsperity : public Pair {
                  atom->tag[i], atom->type[i], atom->radius[i], radii[atom->type[i]]);
   }
 
-  // What one contact adds to forces, memory and sums.
-  void contact(int i, int j, Record *record, double dt, bool advance, double &outside)
+  // Whether two spheres touch, or attract each other over a gap.
+  bool near(const asperity_body &one, const asperity_body &other, int i, int j) const
+  {
+    const double *p = one.position, *q = other.position;
+    const double dx = p[0] - q[0], dy = p[1] - q[1], dz = p[2] - q[2];
+    double sum = one.radius + other.radius;
+    if (ranged) sum += laws[atom->type[i]][atom->type[j]]->range;
+    return dx * dx + dy * dy + dz * dz < sum * sum;
+  }
+
+  // A contact comes to the batch; spheres in the order of their IDs, so that no exchange ever turns
+  // the memory round.
+  void gather(int i, int j, int entry)
+  {
+    const int *type = atom->type, slot = history->slots[entry];
+    if (slot >= 0) history->memories.fetch(slot + BATCH);
+    batch[filled++] = {i, j, entry, slot, atom->tag[i] < atom->tag[j], false, laws[type[i]][type[j]].get(), 0.0, 0.0};
+  }
+
+  // The pairs of the batch that have the same law as one of them, from `start` on; where they end.
+  int line_up(int one, int start)
+  {
+    const Law *law = batch[one].law;
+    for (int k = one; k < filled; k++)
+      if (batch[k].law == law) place[k] = start++;
+    return start;
+  }
+
+  // Where the law finds and leaves the memory: in its slot, and if it is not to be kept, or not yet, here.
+  void prepare(int k, bool advance)
+  {
+    Entry &one = batch[k];
+    asperity_pair &pair = pairs[place[k]];
+    Memories &memories = history->memories;
+    const int slot = one.slot;
+    const bool in_place = slot >= 0 && advance;
+    pair.i = &bodies[one.first ? one.i : one.j];
+    pair.j = &bodies[one.first ? one.j : one.i];
+    if (slot < 0) fresh[k] = {};
+    pair.before = slot < 0 ? &fresh[k] : &memories.contact[slot];
+    pair.after = in_place ? &memories.contact[slot] : &fresh[k];
+    pair.turning = nullptr;
+    pair.cohesion = nullptr;
+    if (turning) {
+      if (!in_place) fresh_turning[k] = slot < 0 ? asperity_turning{} : memories.turning[slot];
+      pair.turning = in_place ? &memories.turning[slot] : &fresh_turning[k];
+    }
+    if (one.law->coheres()) {
+      if (!in_place) fresh_cohesion[k] = slot < 0 ? asperity_cohesion{} : memories.cohesion[slot];
+      pair.cohesion = in_place ? &memories.cohesion[slot] : &fresh_cohesion[k];
+    }
+    if (in_place && memories.holds) memories.coheres[slot] = one.law->coheres();
+    one.plastic = pair.before->plastic;
+    one.slip = pair.before->slip;
+  }
+
+  // The contacts of the batch: memories, and forces and sums in the order of the list, whatever laws they have.
+  void settle(double dt, bool advance, double &outside)
+  {
+    std::fill(place, place + filled, -1);
+    for (int k = 0, end = 0; k < filled; k++)
+      if (place[k] < 0) end = line_up(k, end);
+    for (int k = 0; k < filled; k++) prepare(k, advance);
+    for (int k = 0, end = 0; k < filled; k++) {
+      if (place[k] != end) continue;    // not the first of its law
+      const Law *law = batch[k].law;
+      int count = 0;
+      for (int other = k; other < filled; other++) count += batch[other].law == law;
+      asperity_spheres_many(&law->law, dt, count, pairs + end);
+      end += count;
+    }
+    for (int k = 0; k < filled; k++) {
+      const asperity_pair &pair = pairs[place[k]];
+      if (pair.out.flags & ASPERITY_NO_NUMBER) no_answer(batch[k].i, batch[k].j);
+      add_up(batch[k], pair.out, outside);
+      if (advance) keep(batch[k], pair);
+    }
+    // Only now, as memories move when there are more of them.
+    for (int k = 0; advance && k < filled; k++)
+      if (batch[k].begins) begin(batch[k], pairs[place[k]]);
+    filled = 0;
+  }
+
+  // What a contact adds to the forces.
+  void add_up(const Entry &one, const asperity_forces &out, double &outside)
   {
     double **x = atom->x, **f = atom->f, **torque = atom->torque;
-    const tagint *tag = atom->tag;
-    const int nlocal = atom->nlocal;
-    asperity_contact after, before = {};
-    asperity_turning turned = {};
-    asperity_cohesion joined = {};
-    asperity_forces out;
-    if (record) before = record->contact;
-    if (record && turning && !record->turning.empty()) turned = record->turning[0];
-    if (record && !record->cohesion.empty()) joined = record->cohesion[0];
-    const bool first = forces(i, j, dt, before, after, turned, joined, out);
-    const double *fi = first ? out.force_i : out.force_j, *ti = first ? out.torque_i : out.torque_j;
-    const double *tj = first ? out.torque_j : out.torque_i;
+    const int i = one.i, j = one.j, nlocal = atom->nlocal;
+    const double *fi = one.first ? out.force_i : out.force_j, *ti = one.first ? out.torque_i : out.torque_j;
+    const double *tj = one.first ? out.torque_j : out.torque_i;
     for (int k = 0; k < 3; k++) {
       f[i][k] += fi[k];
       torque[i][k] += ti[k];
-      if (j < nlocal) {
+    }
+    if (j < nlocal)
+      for (int k = 0; k < 3; k++) {
         f[j][k] -= fi[k];
         torque[j][k] += tj[k];
       }
-    }
     if (out.flags & ASPERITY_OUT_OF_RANGE) outside += j < nlocal ? 1.0 : 0.5;
-    if (advance) {
-      const double lost[4] = {after.plastic - before.plastic, after.slip - before.slip, out.damped, out.parted};
-      const asperity_cohesion *held = laws[atom->type[i]][atom->type[j]]->coheres() ? &joined : nullptr;
-      history->add_heat(i, j, lost);
-      if (asperity_may_forget_cohesive(&after, &joined)) {
-        history->drop(i, tag[j]);
-        if (j < nlocal) history->drop(j, tag[i]);
-      } else {
-        history->put(i, tag[j], after, turning ? &turned : nullptr, held);
-        if (j < nlocal) history->put(j, tag[i], after, turning ? &turned : nullptr, held);
-      }
-    } else if (record && j < nlocal) {
-      if (Record *other = history->find(j, tag[i])) other->seen = true;
-    }
     if (evflag)
       ev_tally_xyz(i, j, nlocal, 0, out.stored, 0.0, fi[0], fi[1], fi[2],
                    x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]);
+  }
+
+  // What it dissipated, and whether its memory is kept.
+  void keep(Entry &one, const asperity_pair &pair)
+  {
+    static const asperity_cohesion none = {};
+    const asperity_contact &after = *pair.after;
+    const double lost[4] = {after.plastic - one.plastic, after.slip - one.slip, pair.out.damped, pair.out.parted};
+    history->add_heat(one.i, one.j, lost);
+    const bool forgets = asperity_may_forget_cohesive(&after, pair.cohesion ? pair.cohesion : &none);
+    one.begins = one.slot < 0 && !forgets;
+    if (one.slot >= 0 && forgets) history->drop(one.entry, one.i, one.j);
+  }
+
+  void begin(const Entry &one, const asperity_pair &pair)
+  {
+    Memories &memories = history->memories;
+    const int slot = history->add(one.entry, one.i, one.j);
+    memories.contact[slot] = *pair.after;
+    if (turning) memories.turning[slot] = *pair.turning;
+    if (pair.cohesion) memories.cohesion[slot] = *pair.cohesion;
+    if (pair.cohesion) memories.coheres[slot] = 1;
   }
 
  public:
@@ -213,6 +298,7 @@ class PairAsperity : public Pair {
     // Lists by size end at the sum of the radii; surfaces that hold each other may be further apart, and
     // the cutoffs of init_one() count.
     neighbor->add_request(this, cohesive ? NeighConst::REQ_NEWTON_OFF : NeighConst::REQ_SIZE | NeighConst::REQ_NEWTON_OFF);
+    if (cohesive && !history->memories.holds) history->memories.allow_cohesion();
     masses.init();
     radii = greatest_radii(lmp);
     for (double &radius : radii) radius = std::max(radius, largest);
@@ -248,40 +334,28 @@ class PairAsperity : public Pair {
     ev_init(eflag, vflag);
     const bool advance = !update->setupflag, rebuilt = neighbor->ago == 0;
     const double dt = advance ? update->dt : 0.0;
-    double **x = atom->x;
-    const double *radius = atom->radius;
-    const int nlocal = atom->nlocal;
+    const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
     double outside = 0.0;
+    filled = 0;    // an error may have left some
     if (rebuilt && masses.any()) {
       masses.look();
       comm->forward_comm(this);
     }
-    for (int i = 0; i < nlocal; i++) {
-      require_known(i);
-      history->know(i);
-      if (rebuilt)
-        for (auto &record : history->rows[i]) record.seen = false;
-    }
-    for (int ii = 0; ii < list->inum; ii++) {
-      const int i = list->ilist[ii];
-      const int *neighbours = list->firstneigh[i];
-      const bool has = !history->rows[i].empty();
-      for (int jj = 0; jj < list->numneigh[i]; jj++) {
+    for (int i = 0; i < nlocal; i++) require_known(i);
+    if (rebuilt || !history->matched) history->match(list);
+    bodies.resize(nall);
+    for (int i = 0; i < nall; i++) fill(bodies[i], atom, masses, i);
+    for (int ii = 0, entry = 0; ii < list->inum; ii++) {
+      const int i = list->ilist[ii], *neighbours = list->firstneigh[i];
+      const asperity_body &one = bodies[i];
+      for (int jj = 0; jj < list->numneigh[i]; jj++, entry++) {
         const int j = neighbours[jj] & NEIGHMASK;
-        const double dx = x[i][0] - x[j][0], dy = x[i][1] - x[j][1], dz = x[i][2] - x[j][2];
-        double sum = radius[i] + radius[j];
-        if (ranged) sum += laws[atom->type[i]][atom->type[j]]->range;
-        const bool apart = dx * dx + dy * dy + dz * dz >= sum * sum;
-        if (apart && !has && history->rows[i].empty()) continue;
-        Record *record = history->find(i, atom->tag[j]);
-        if (record) record->seen = true;
-        if (apart && !record) continue;
-        contact(i, j, record, dt, advance, outside);
+        if (history->slots[entry] < 0 && !near(one, bodies[j], i, j)) continue;
+        gather(i, j, entry);
+        if (filled == BATCH) settle(dt, advance, outside);
       }
     }
-    // What left the neighbour list is gone for good.
-    if (rebuilt)
-      for (int i = 0; i < nlocal; i++) history->drop_unseen(i);
+    settle(dt, advance, outside);
     for (int k = 0; k < 3; k++) pvector[k] = history->total[k];
     pvector[3] = outside;
     pvector[4] = history->total[3];
@@ -294,16 +368,25 @@ class PairAsperity : public Pair {
     for (int k = 0; k < single_extra; k++) svector[k] = 0.0;
     fforce = 0.0;
     const double sum = atom->radius[i] + atom->radius[j] + laws[atom->type[i]][atom->type[j]]->range;
-    Record *record = i < atom->nlocal ? history->find(i, atom->tag[j]) : history->find(j, atom->tag[i]);
-    if (!record && rsq >= sum * sum) return 0.0;
+    const int slot = i < atom->nlocal ? history->find(i, j) : history->find(j, i);
+    if (slot < 0 && rsq >= sum * sum) return 0.0;
+    const Memories &memories = history->memories;
+    const Law &law = *laws[atom->type[i]][atom->type[j]];
+    asperity_body a, b;
     asperity_contact after, before = {};
     asperity_turning turned = {};
     asperity_cohesion joined = {};
     asperity_forces out;
-    if (record) before = record->contact;
-    if (record && turning && !record->turning.empty()) turned = record->turning[0];
-    if (record && !record->cohesion.empty()) joined = record->cohesion[0];
-    const bool first = forces(i, j, 0.0, before, after, turned, joined, out);
+    if (slot >= 0) before = memories.contact[slot];
+    if (slot >= 0 && turning) turned = memories.turning[slot];
+    if (slot >= 0 && memories.holds) joined = memories.cohesion[slot];
+    const bool first = atom->tag[i] < atom->tag[j];
+    asperity_turning *turning_too = turning ? &turned : nullptr;
+    asperity_cohesion *cohesion_too = law.coheres() ? &joined : nullptr;
+    fill(a, atom, masses, first ? i : j);
+    fill(b, atom, masses, first ? j : i);
+    asperity_spheres_cohesive(&law.law, &a, &b, 0.0, &before, &after, turning_too, turning_too, cohesion_too, cohesion_too, &out);
+    if (out.flags & ASPERITY_NO_NUMBER) no_answer(i, j);
     svector[0] = out.f_n;
     svector[1] = out.f_t;
     svector[2] = out.overlap;
@@ -319,10 +402,7 @@ class PairAsperity : public Pair {
 
   double memory_usage() override
   {
-    double bytes = 0.0;
-    if (history)
-      for (const auto &row : history->rows) bytes += static_cast<double>(row.capacity() * sizeof(Record));
-    return bytes;
+    return history ? history->bytes() : 0.0;
   }
 };
 

@@ -175,6 +175,7 @@ fn purpose(file: &str) -> &'static str {
         "asperity_contact.h" => "the update of one contact",
         "asperity_turning.h" => "twist and roll of one contact",
         "asperity_cohesion.h" => "cohesion of one contact",
+        "asperity_frame.h" => "memory and frame of one contact in three dimensions",
         "asperity_contact3d.h" => "two spheres, or a sphere and a wall, in three dimensions",
         "asperity_law.h" | "asperity_law.py" => "the law",
         "law.asperity" => "the law, to be read when an engine starts",

@@ -220,6 +220,67 @@ static void energy(const asperity_law3d *law) {
     expect(asperity_may_forget(&c), "    and forgotten once it is far off", -c.state.h / c.state.h_max);
 }
 
+/* Many pairs in one call have the forces and memories of each by itself; one whose centres coincide has no answer, and the others do not mind. */
+static void many(asperity_law3d law, int turns, double cohesion) {
+    enum { PAIRS = 21, LOST = 11 };
+    asperity_body bodies[PAIRS][2];
+    asperity_contact each[PAIRS], memory[PAIRS], kept;
+    asperity_turning each_turning[PAIRS], turning[PAIRS];
+    asperity_cohesion each_cohesion[PAIRS], joined[PAIRS];
+    asperity_pair pairs[PAIRS];
+    double worst = 0.0, apart;
+    int k, n, step, lost = 0;
+    memset(pairs, 0, sizeof pairs);
+    (void)asperity_law_cohesion(&law, cohesion, 0.0);
+    memset(each, 0, sizeof each);
+    memset(each_turning, 0, sizeof each_turning);
+    memset(each_cohesion, 0, sizeof each_cohesion);
+    memset(bodies, 0, sizeof bodies);
+    memcpy(memory, each, sizeof each);
+    memcpy(turning, each_turning, sizeof turning);
+    memcpy(joined, each_cohesion, sizeof joined);
+    for (n = 0; n < PAIRS; n++) {
+        bodies[n][0].radius = uniform(0.5, 1.5);
+        bodies[n][1].radius = uniform(0.5, 1.5);
+        bodies[n][0].mass = uniform(0.5, 1.5);
+        bodies[n][1].mass = n % 5 == 0 ? INFINITY : 1.0;
+        for (k = 0; k < 3; k++) {
+            bodies[n][0].position[k] = n % 4 == 0 ? (k == 2) : uniform(0.2, 1.0);
+            bodies[n][0].spin[k] = n % 3 == 0 ? uniform(-30.0, 30.0) : uniform(-0.01, 0.01);
+        }
+        apart = n == LOST ? 0.0 : (bodies[n][0].radius + bodies[n][1].radius) * 1.001 / length(bodies[n][0].position);
+        for (k = 0; k < 3; k++) {
+            bodies[n][0].velocity[k] = -bodies[n][0].position[k] * uniform(0.5, 1.5);
+            bodies[n][0].position[k] *= apart;
+        }
+    }
+    for (step = 0; step < 40; step++) {
+        for (n = 0; n < PAIRS; n++) {
+            asperity_body *i = &bodies[n][0], *j = &bodies[n][1];
+            asperity_pair pair = {i, j, &memory[n], &memory[n], turns ? &turning[n] : NULL, cohesion > 0.0 ? &joined[n] : NULL, pairs[n].out};
+            for (k = 0; k < 3; k++) {
+                i->position[k] += n == LOST ? 0.0 : 1e-3 * i->velocity[k];
+            }
+            pairs[n] = pair;
+        }
+        kept = memory[LOST];
+        asperity_spheres_many(&law, 1e-3, PAIRS, pairs);
+        lost += pairs[LOST].out.flags == ASPERITY_NO_NUMBER && memcmp(&kept, &memory[LOST], sizeof kept) == 0;
+        for (n = 0; n < PAIRS; n++) {
+            asperity_turning *turned = turns ? &each_turning[n] : NULL;
+            asperity_cohesion *holds = cohesion > 0.0 ? &each_cohesion[n] : NULL;
+            asperity_forces out;
+            asperity_spheres_cohesive(&law, &bodies[n][0], &bodies[n][1], 1e-3, &each[n], &each[n], turned, turned, holds, holds, &out);
+            for (k = 0; n != LOST && k < 3; k++) {
+                double error = fabs(out.force_i[k] - pairs[n].out.force_i[k]) + fabs(out.torque_j[k] - pairs[n].out.torque_j[k]) + fabs(each[n].state.slider[0][k] - memory[n].state.slider[0][k]);
+                worst = error > worst || !(error >= 0.0) ? error : worst;
+            }
+            worst = n != LOST && out.flags != pairs[n].out.flags ? 1.0 : worst;
+        }
+    }
+    expect(worst < 1e-9 && lost == 40, "many pairs at once: forces against those of each by itself", worst);
+}
+
 int main(void) {
     asperity_law3d wall, pair;
     asperity_forces out;
@@ -250,6 +311,9 @@ int main(void) {
     objectivity(&pair, 0);
     objectivity(&wall, 1);
     exchange(&pair);
+    many(pair, 0, 0.0);
+    many(pair, 1, 0.0);
+    many(pair, 1, 1e-2);
     restitution(wall);
     energy(&wall);
     return failures != 0;

@@ -1,4 +1,4 @@
-"""LAMMPS as its users start it, with its defaults: empty boxes, inserted, deleted and renumbered spheres, frozen and rigid ones, restarts.
+"""LAMMPS as its users start it, with its defaults: empty boxes, inserted, deleted and renumbered spheres, frozen and rigid ones, periodic images, restarts.
 
 Run by run.sh: test_starts.py PLUGIN METAL ELASTIC, the second and third what `asperity law export ... --for lammps` wrote for equal.toml and for elastic.toml.
 """
@@ -362,6 +362,58 @@ def neighbours():
         expect(worst < 1e-6 and len(dumps["end.dump"]) == 64, f"{what}: change of forces after 600 steps", f"{worst:.1e}")
 
 
+# ---- memory: images, rebuilt lists, restarts
+
+def images():
+    """In a box two cells wide a sphere touches several images of another: each contact is by itself, as in eight such boxes side by side."""
+    small = packed().replace("0 3.92", "0 1.96")
+    for words in ("", "neigh_modify every 1 delay 0 check no\n"):
+        _, one = told(small + words + "run 150\nrun 150\n" + dump("end"))
+        _, eight = told(small.replace("pair_style", "replicate 2 2 2\npair_style") + words + "run 150\nrun 150\n" + dump("end"))
+        size = max(abs(v) for row in one["end.dump"] for v in row[4:7])
+        worst = max(min(max(abs(a - b) for a, b in zip(row[4:7], other[4:7])) for other in one["end.dump"]) for row in eight["end.dump"]) / size
+        expect(worst < 1e-9 and len(one["end.dump"]) == 8 and len(eight["end.dump"]) == 64, f"a box two cells wide against eight of them{', lists made anew' if words else ''}: forces", f"{worst:.1e}")
+
+
+def continued():
+    """The second half of a run from its restart file, to the last bit."""
+    styles = "pair_style" + packed().split("pair_style")[1]
+    for width in ("3.92", "1.96"):
+        for ranks in (1, 2):
+            with tempfile.TemporaryDirectory() as name:
+                file = Path(name, "half.restart")
+                _, whole = told(packed().replace("0 3.92", f"0 {width}") + f"run 200\nwrite_restart {file}\nrun 200\n" + dump("end"), ranks)
+                _, half = told(f"read_restart {file}\ncomm_modify vel yes\n" + styles + "run 200\n" + dump("end"), ranks)
+            count = round(float(width) / 0.98) ** 3
+            expect(whole == half and len(whole["end.dump"]) == count, f"{count} spheres, {ranks} rank(s), the second half from a restart file", "equal" if whole == half else "different")
+
+
+def near():
+    """Two spheres, one on each rank, pressed, drawn apart by less than the dent is deep and pressed again: the dent is still there."""
+    start = f"""boundary p p p
+region box block -5 5 -5 5 -5 5
+create_box 1 box
+create_atoms 1 single -0.499 0 0
+create_atoms 1 single 0.502 0 0
+set group all diameter 1 density 1
+group moved id 2
+pair_style asperity
+pair_coeff 1 1 {PAIR} {E}
+timestep 0.001
+fix move all nve/noforce
+"""
+    lead = "velocity moved set {} 0.002 0\nrun {}\n"
+    press = lead.format(-0.1, 210) + lead.format(0.1, 220) + lead.format(0, 50) + lead.format(-0.1, 210)
+    fresh = lead.format(0, 480) + lead.format(-0.1, 200)
+    forces = []
+    for words, moves, ranks in (("every 1 delay 0 check no", press, 1), ("every 1 delay 0 check no", press, 2), ("every 1000 delay 1000 check no", press, 1), ("every 1 delay 0 check no", fresh, 1)):
+        _, dumps = told(start + f"neigh_modify {words}\n" + moves + dump("end"), ranks)
+        forces.append(dumps["end.dump"][0][4:7])
+    same = max(math.dist(one, forces[0]) for one in forces[1:3]) / math.hypot(*forces[0])
+    other = math.dist(forces[0], forces[3]) / math.hypot(*forces[0])
+    expect(same < 1e-9 and other > 0.05, "a dent outlives new lists while spheres are near, 1 and 2 ranks: forces", f"{same:.1e} (without a dent {other:.2f})")
+
+
 # ---- the input that the program writes
 
 def input_runs():
@@ -379,8 +431,8 @@ def input_runs():
 if __name__ == "__main__":
     only = os.environ.get("ASPERITY_ONLY", "").split()
     tests = [lambda: poured(1), lambda: poured(2), larger_ones_poured, deposited, grown, types_without_tables, renumbered, deleted, masses, tangential, normalised, restarted,
-             no_answers, neighbours, input_runs]
-    names = ["poured", "poured2", "larger", "deposited", "grown", "types", "renumbered", "deleted", "masses", "tangential", "normalised", "restarted", "no_answers", "neighbours", "input"]
+             no_answers, neighbours, images, continued, near, input_runs]
+    names = ["poured", "poured2", "larger", "deposited", "grown", "types", "renumbered", "deleted", "masses", "tangential", "normalised", "restarted", "no_answers", "neighbours", "images", "continued", "near", "input"]
     for name, test in zip(names, tests):
         if not only or name in only:
             test()

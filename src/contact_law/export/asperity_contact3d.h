@@ -5,7 +5,7 @@
  * A contact's memory is one asperity_contact: 36 numbers, all zero before first contact; copy it, write it to a restart file as it is, with asperity_fingerprint(&table) beside it.
  * Each step, for each pair that is kept:
  *     asperity_spheres(&law, &i, &j, dt, &contact, &contact, &out);
- * and add out.force_i, out.torque_i, out.force_j, out.torque_j. With `wall` in place of j: asperity_sphere_wall(). dt = 0 asks for the forces alone, at the same place.
+ * and add out.force_i, out.torque_i, out.force_j, out.torque_j; or asperity_spheres_many() for many pairs of one law, which is faster. With `wall` in place of j: asperity_sphere_wall(). dt = 0 asks for the forces alone, at the same place.
  *
  * - The tangent frame is carried along: e1 is stored with the contact, turned by the mean spin of the two bodies and laid into the new tangent plane, e2 = n x e1. Any rigid motion of
  *   the pair gives the same forces, if velocities and places are of one time. With those of the middle of the step a turn by the angle a slips by
@@ -25,8 +25,7 @@
 #ifndef ASPERITY_CONTACT3D_H
 #define ASPERITY_CONTACT3D_H
 
-#include "asperity_cohesion.h"
-#include "asperity_turning.h"
+#include "asperity_frame.h"
 
 /* Flags of asperity_forces. */
 enum {
@@ -65,14 +64,6 @@ typedef struct asperity_wall {
     asperity_real point[3], normal[3], velocity[3], spin[3]; /* velocity: that of `point` */
 } asperity_wall;
 
-/* The memory of a contact: lengths over R, work in the engine's units. */
-typedef struct asperity_contact {
-    asperity_state state;
-    asperity_real axis[2]; /* e1, packed */
-    asperity_real plastic; /* work dissipated since first contact: by plastic flow, */
-    asperity_real slip;    /* by slip */
-} asperity_contact;
-
 typedef struct asperity_forces {
     asperity_real force_i[3], torque_i[3], force_j[3], torque_j[3];
     asperity_real f_n, f_t, overlap;
@@ -81,121 +72,6 @@ typedef struct asperity_forces {
     asperity_real parted; /* work that cohesion has dissipated in this step, as surfaces met, parted or were flattened */
     int flags;
 } asperity_forces;
-
-ASPERITY_FN asperity_real asperity_dot(const asperity_real a[3], const asperity_real b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-ASPERITY_FN void asperity_cross(const asperity_real a[3], const asperity_real b[3], asperity_real c[3]) {
-    asperity_real c0 = a[1] * b[2] - a[2] * b[1], c1 = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-    c[0] = c0;
-    c[1] = c1;
-}
-
-/* A direction as two numbers: the octahedron |x| + |y| + |z| = 1, its lower half folded out. (0, 0) is the direction z. */
-ASPERITY_FN void asperity_pack(const asperity_real v[3], asperity_real packed[2]) {
-    asperity_real one = ASPERITY_R(1.0), inverse = one / (ASPERITY_ABS(v[0]) + ASPERITY_ABS(v[1]) + ASPERITY_ABS(v[2])), p = v[0] * inverse, q = v[1] * inverse;
-    packed[0] = v[2] < ASPERITY_R(0.0) ? (one - ASPERITY_ABS(q)) * (p < ASPERITY_R(0.0) ? -one : one) : p;
-    packed[1] = v[2] < ASPERITY_R(0.0) ? (one - ASPERITY_ABS(p)) * (q < ASPERITY_R(0.0) ? -one : one) : q;
-}
-
-/* The direction, of any length. */
-ASPERITY_FN void asperity_unpack(const asperity_real packed[2], asperity_real v[3]) {
-    asperity_real one = ASPERITY_R(1.0), p = packed[0], q = packed[1];
-    v[2] = one - ASPERITY_ABS(p) - ASPERITY_ABS(q);
-    v[0] = v[2] < ASPERITY_R(0.0) ? (one - ASPERITY_ABS(q)) * (p < ASPERITY_R(0.0) ? -one : one) : p;
-    v[1] = v[2] < ASPERITY_R(0.0) ? (one - ASPERITY_ABS(p)) * (q < ASPERITY_R(0.0) ? -one : one) : q;
-}
-
-/* Carries the frame of a contact into the step: e1 turned by spin dt and laid into the plane across n. */
-ASPERITY_FN void asperity_carry(asperity_real axis[2], const asperity_real spin[3], asperity_real dt, const asperity_real n[3], asperity_real e1[3], asperity_real e2[3]) {
-    asperity_real v[3], turn[3], once[3], twice[3], angle2 = ASPERITY_R(0.0), s, c, along, size;
-    int k;
-    asperity_unpack(axis, v);
-    for (k = 0; k < 3; k++) {
-        turn[k] = spin[k] * dt;
-        angle2 += turn[k] * turn[k];
-    }
-    /* Rodrigues; (sin a)/a and (1 - cos a)/a^2 by their series while the angle of a step is small. */
-    if (angle2 < ASPERITY_R(1e-4)) {
-        s = ASPERITY_R(1.0) - angle2 / ASPERITY_R(6.0) * (ASPERITY_R(1.0) - angle2 / ASPERITY_R(20.0) * (ASPERITY_R(1.0) - angle2 / ASPERITY_R(42.0)));
-        c = ASPERITY_R(0.5) - angle2 / ASPERITY_R(24.0) * (ASPERITY_R(1.0) - angle2 / ASPERITY_R(30.0) * (ASPERITY_R(1.0) - angle2 / ASPERITY_R(56.0)));
-    } else {
-        asperity_real angle = ASPERITY_SQRT(angle2);
-        s = ASPERITY_SIN(angle) / angle;
-        c = (ASPERITY_R(1.0) - ASPERITY_COS(angle)) / angle2;
-    }
-    asperity_cross(turn, v, once);
-    asperity_cross(turn, once, twice);
-    for (k = 0; k < 3; k++) {
-        v[k] += s * once[k] + c * twice[k];
-    }
-    along = asperity_dot(v, n);
-    for (k = 0; k < 3; k++) {
-        e1[k] = v[k] - along * n[k];
-    }
-    size = ASPERITY_SQRT(asperity_dot(e1, e1));
-    if (!(size > ASPERITY_R(1e-3) * ASPERITY_SQRT(asperity_dot(v, v)))) {
-        /* e1 would be n, as in a fresh contact along z: any other will do. */
-        v[0] = ASPERITY_R(1.0);
-        v[1] = v[2] = ASPERITY_R(0.0);
-        if (ASPERITY_ABS(n[0]) > ASPERITY_R(0.9)) {
-            v[0] = ASPERITY_R(0.0);
-            v[1] = ASPERITY_R(1.0);
-        }
-        along = asperity_dot(v, n);
-        for (k = 0; k < 3; k++) {
-            e1[k] = v[k] - along * n[k];
-        }
-        size = ASPERITY_SQRT(asperity_dot(e1, e1));
-    }
-    for (k = 0; k < 3; k++) {
-        e1[k] /= size;
-    }
-    asperity_cross(n, e1, e2);
-    asperity_pack(e1, axis);
-}
-
-/* The memory as the other particle has it, where an engine has exchanged i and j: n, and with it e2, turns round and so do displacements. */
-ASPERITY_FN void asperity_exchange(asperity_contact *contact) {
-    int k;
-    contact->state.vertex[0] = -contact->state.vertex[0];
-    for (k = 0; k < ASPERITY_SLIDERS; k++) {
-        contact->state.slider[0][k] = -contact->state.slider[0][k];
-    }
-}
-
-/* The same of the memory of twist and roll. */
-ASPERITY_FN void asperity_exchange_turning(asperity_turning *turning) {
-    int j, k;
-    for (k = 0; k < ASPERITY_SLIDERS; k++) {
-        for (j = 0; j < ASPERITY_SECTORS; j++) {
-            turning->sector[j][0][k] = -turning->sector[j][0][k];
-        }
-        for (j = 0; j < 2; j++) { /* those on the second axis change places */
-            asperity_real kept = turning->sector[1][j][k];
-            turning->sector[1][j][k] = turning->sector[3][j][k];
-            turning->sector[3][j][k] = kept;
-        }
-    }
-    turning->moment[0] = -turning->moment[0];
-}
-
-/* Whether a contact's memory may go: it never touched, or the gap is wider than the dent is deep, so that a next contact lands elsewhere. */
-ASPERITY_FN int asperity_may_forget(const asperity_contact *contact) {
-    return contact->state.h < ASPERITY_R(0.0) && -contact->state.h >= contact->state.h_max;
-}
-
-/* The memory of cohesion as the other particle has it. */
-ASPERITY_FN void asperity_exchange_cohesion(asperity_cohesion *cohesion) {
-    cohesion->slider[0] = -cohesion->slider[0];
-}
-
-/* Whether both memories may go. */
-ASPERITY_FN int asperity_may_forget_cohesive(const asperity_contact *contact, const asperity_cohesion *cohesion) {
-    return asperity_may_forget(contact) && cohesion->joined == ASPERITY_R(0.0);
-}
 
 /* The factor of a dashpot, force = factor sqrt(m k) v, with k = 2 E* a the stiffness of an unloading, that gives an impact which stays elastic the restitution coefficient e,
  * 0.1 <= e <= 1. The dashpot never pulls. A fit to the integrated motion, to 1e-5 in e. */
@@ -310,94 +186,303 @@ ASPERITY_FN asperity_real asperity_allowed(const asperity_real f[2], const asper
     return share < ASPERITY_R(1.0) ? share : ASPERITY_R(1.0);
 }
 
-/* What both kinds of contact do once normal, lever arms and relative velocity are known: n from j to i, v that of i's point of contact relative to j's, `turns` the spin of i
- * relative to j. `turning` is NULL where twist and roll are left out, `cohesion` where that is. */
-ASPERITY_FN void asperity_contact_forces(
-    const asperity_law3d *law, asperity_real radius, asperity_real mass, asperity_real overlap, const asperity_real n[3], const asperity_real v[3],
-    const asperity_real spin[3], const asperity_real turns[3], asperity_real arm_i, asperity_real arm_j, asperity_real dt, const asperity_contact *before, asperity_contact *after,
-    const asperity_turning *turning, asperity_turning *turning_after, const asperity_cohesion *cohesion, asperity_cohesion *cohesion_after, asperity_forces *out) {
-    asperity_contact c = *before;
-    asperity_cohesion joined;
-    asperity_attraction pull;
-    asperity_moments moments;
-    asperity_response answer;
-    asperity_real e1[3], e2[3], d[2], along[2], share = law->table->share, approaching = -asperity_dot(v, n), tangential[3], turn[3], f_n, factor, dashpot = ASPERITY_R(0.0);
+/* Contacts in a step, each in a lane: what they see of their bodies, and the answers of the update. */
+typedef struct asperity_meetings {
+    asperity_lanes n[3], v[3], spin_i[3], spin_j[3];       /* n from j to i; v that of i's point of contact relative to j's */
+    asperity_lanes radius, mass, overlap, arm_i, arm_j;    /* radius: that of the table's sphere */
+    asperity_lanes e1[3], e2[3], axis[2], along[2];        /* frame, and v in it */
+    asperity_lanes h, d[2], turn[3];                       /* increment of the update */
+    asperity_lanes f_n, f_t[2], stiffness, stored, plastic, friction; /* its answer; later all that acts */
+    asperity_lanes pressed, damped, force[3], lever[3], size; /* pressed: f_n of the update */
+    asperity_moments moments[ASPERITY_TOGETHER];
+    asperity_attraction pull[ASPERITY_TOGETHER];
+    asperity_cohesion joined[ASPERITY_TOGETHER];
+    asperity_state state[ASPERITY_TOGETHER]; /* after the update */
+} asperity_meetings;
+
+/* Two spheres into a lane. */
+ASPERITY_FN void asperity_bring(const asperity_body *i, const asperity_body *j, int l, asperity_meetings *m) {
     int k;
-    memset(out, 0, sizeof *out);
-    out->overlap = overlap;
-    asperity_carry(c.axis, spin, dt, n, e1, e2);
-    along[0] = asperity_dot(v, e1);
-    along[1] = asperity_dot(v, e2);
-    d[0] = share * along[0] * dt;
-    d[1] = share * along[1] * dt;
-    memset(&moments, 0, sizeof moments);
-    if (turning) {
-        turn[0] = share * asperity_dot(turns, e1) * dt;
-        turn[1] = share * asperity_dot(turns, e2) * dt;
-        turn[2] = share * asperity_dot(turns, n) * dt;
-        asperity_update_turning(law->table, radius, law->modulus, &before->state, turning, share * overlap, d, turn, &c.state, turning_after, &answer, &moments, NULL);
-    } else {
-        asperity_update(law->table, radius, law->modulus, &c.state, share * overlap, d, &c.state, &answer, NULL);
+    for (k = 0; k < 3; k++) {
+        m->n[k][l] = i->position[k] - j->position[k];
+        m->v[k][l] = i->velocity[k] - j->velocity[k];
+        m->spin_i[k][l] = i->spin[k];
+        m->spin_j[k][l] = j->spin[k];
     }
-    if (cohesion) {
-        asperity_cohere(&law->cohesion, law->table, radius, law->modulus, &before->state, &c.state, cohesion, d, &joined, &pull);
-        if (!asperity_is_finite(pull.f_n)) {
-            answer.f_n = pull.f_n;
+    m->arm_i[l] = i->radius;
+    m->arm_j[l] = j->radius;
+    m->mass[l] = asperity_effective_mass(i->mass, j->mass);
+}
+
+/* Normals, lever arms and relative velocities of pairs of spheres. */
+ASPERITY_FN void asperity_meet(const asperity_law3d *law, int count, asperity_meetings *m) {
+    asperity_real per_radius = (law->table->plane ? ASPERITY_R(1.0) : law->table->share) * law->table->effective_radius;
+    int l;
+    for (l = 0; l < count; l++) {
+        asperity_real n[3], v[3], spin_i[3], spin_j[3], across_i[3], across_j[3], radius_i = m->arm_i[l], radius_j = m->arm_j[l], distance, overlap, arm_i, arm_j;
+        asperity_of_lane(m->n, l, n);
+        asperity_of_lane(m->v, l, v);
+        asperity_of_lane(m->spin_i, l, spin_i);
+        asperity_of_lane(m->spin_j, l, spin_j);
+        distance = ASPERITY_SQRT(asperity_dot(n, n));
+        overlap = radius_i + radius_j - distance;
+        arm_i = radius_i - ASPERITY_R(0.5) * overlap;
+        arm_j = radius_j - ASPERITY_R(0.5) * overlap;
+        n[0] /= distance;
+        n[1] /= distance;
+        n[2] /= distance;
+        asperity_cross(spin_i, n, across_i);
+        asperity_cross(spin_j, n, across_j);
+        v[0] = v[0] - arm_i * across_i[0] - arm_j * across_j[0];
+        v[1] = v[1] - arm_i * across_i[1] - arm_j * across_j[1];
+        v[2] = v[2] - arm_i * across_i[2] - arm_j * across_j[2];
+        asperity_into_lane(n, l, m->n);
+        asperity_into_lane(v, l, m->v);
+        m->size[l] = distance;
+        m->overlap[l] = overlap;
+        m->arm_i[l] = arm_i;
+        m->arm_j[l] = arm_j;
+        m->radius[l] = radius_i * radius_j / (radius_i + radius_j) / per_radius;
+    }
+}
+
+/* The turn of the frame, and its memory. */
+ASPERITY_INLINE void asperity_turn_of_lane(asperity_meetings *m, int l, asperity_real dt, asperity_real turn[3], asperity_real packed[2]) {
+    turn[0] = ASPERITY_R(0.5) * (m->spin_i[0][l] + m->spin_j[0][l]) * dt;
+    turn[1] = ASPERITY_R(0.5) * (m->spin_i[1][l] + m->spin_j[1][l]) * dt;
+    turn[2] = ASPERITY_R(0.5) * (m->spin_i[2][l] + m->spin_j[2][l]) * dt;
+    packed[0] = m->axis[0][l];
+    packed[1] = m->axis[1][l];
+}
+
+/* The frame of one lane, whatever it is. */
+ASPERITY_FN void asperity_carry_lane(int l, asperity_real dt, asperity_meetings *m) {
+    asperity_real packed[2], turn[3], n[3], e1[3], e2[3];
+    asperity_turn_of_lane(m, l, dt, turn, packed);
+    asperity_of_lane(m->n, l, n);
+    asperity_carry(packed, turn, n, e1, e2);
+    asperity_into_lane(e1, l, m->e1);
+    asperity_into_lane(e2, l, m->e2);
+    m->axis[0][l] = packed[0];
+    m->axis[1][l] = packed[1];
+}
+
+/* Before the update: the frames, whose memories are in `axis`, and what the points of contact move by in them. */
+ASPERITY_FN void asperity_set_out(const asperity_law3d *law, asperity_real dt, int count, int turning, asperity_meetings *m) {
+    asperity_real share = law->table->share;
+    asperity_lanes axis[2], odd;
+    int l;
+    for (l = 0; l < count; l++) {
+        asperity_real n[3], turn[3], packed[2], angle2, s, c, size, e1[3], e2[3];
+        int lies;
+        asperity_of_lane(m->n, l, n);
+        asperity_turn_of_lane(m, l, dt, turn, packed);
+        angle2 = asperity_dot(turn, turn);
+        asperity_small_turn(angle2, &s, &c);
+        lies = asperity_lay(packed, turn, s, c, n, e1, &size);
+        odd[l] = angle2 < ASPERITY_R(ASPERITY_SMALL_TURN) && lies ? ASPERITY_R(0.0) : ASPERITY_R(1.0);
+        asperity_complete(n, size, e1, e2, packed);
+        asperity_into_lane(e1, l, m->e1);
+        asperity_into_lane(e2, l, m->e2);
+        axis[0][l] = packed[0];
+        axis[1][l] = packed[1];
+    }
+    for (l = 0; l < count; l++) {
+        if (odd[l] > ASPERITY_R(0.0)) {
+            asperity_carry_lane(l, dt, m);
+        } else {
+            m->axis[0][l] = axis[0][l];
+            m->axis[1][l] = axis[1][l];
         }
     }
-    if (!asperity_is_finite(answer.f_n) || !asperity_is_finite(answer.f_t[0] + answer.f_t[1])) {
+    for (l = 0; l < count; l++) {
+        asperity_real v[3], e1[3], e2[3];
+        asperity_of_lane(m->v, l, v);
+        asperity_of_lane(m->e1, l, e1);
+        asperity_of_lane(m->e2, l, e2);
+        m->along[0][l] = asperity_dot(v, e1);
+        m->along[1][l] = asperity_dot(v, e2);
+        m->d[0][l] = share * m->along[0][l] * dt;
+        m->d[1][l] = share * m->along[1][l] * dt;
+        m->h[l] = share * m->overlap[l];
+    }
+    for (l = 0; turning && l < count; l++) {
+        asperity_real turns[3] = {m->spin_i[0][l] - m->spin_j[0][l], m->spin_i[1][l] - m->spin_j[1][l], m->spin_i[2][l] - m->spin_j[2][l]}, n[3], e1[3], e2[3];
+        asperity_of_lane(m->n, l, n);
+        asperity_of_lane(m->e1, l, e1);
+        asperity_of_lane(m->e2, l, e2);
+        m->turn[0][l] = share * asperity_dot(turns, e1) * dt;
+        m->turn[1][l] = share * asperity_dot(turns, e2) * dt;
+        m->turn[2][l] = share * asperity_dot(turns, n) * dt;
+    }
+}
+
+/* The update of one lane. `turning` is NULL where twist and roll are left out, `cohesion` where that is. */
+ASPERITY_FN void asperity_press(
+    const asperity_law3d *law, const asperity_state *before, const asperity_turning *turning, asperity_turning *turning_after, const asperity_cohesion *cohesion, int l,
+    asperity_meetings *m) {
+    const asperity_real d[2] = {m->d[0][l], m->d[1][l]};
+    asperity_real turn[3];
+    asperity_response answer;
+    if (turning) {
+        asperity_of_lane(m->turn, l, turn);
+        asperity_update_turning(law->table, m->radius[l], law->modulus, before, turning, m->h[l], d, turn, &m->state[l], turning_after, &answer, &m->moments[l], NULL);
+        answer.stored += m->moments[l].stored;
+        answer.friction += m->moments[l].lost;
+    } else {
+        asperity_update(law->table, m->radius[l], law->modulus, before, m->h[l], d, &m->state[l], &answer, NULL);
+    }
+    if (cohesion) {
+        asperity_cohere(&law->cohesion, law->table, m->radius[l], law->modulus, before, &m->state[l], cohesion, d, &m->joined[l], &m->pull[l]);
+    }
+    m->f_n[l] = answer.f_n;
+    m->f_t[0][l] = answer.f_t[0];
+    m->f_t[1][l] = answer.f_t[1];
+    m->stiffness[l] = answer.stiffness;
+    m->stored[l] = answer.stored;
+    m->plastic[l] = answer.plastic;
+    m->friction[l] = answer.friction;
+}
+
+/* After the update: the forces, from what it answered. `cohesion`: whether that adds to them. */
+ASPERITY_FN void asperity_act(const asperity_law3d *law, asperity_real dt, int count, int cohesion, asperity_meetings *m) {
+    asperity_real share = law->table->share, damping = law->damping, zero = ASPERITY_R(0.0), damps = damping > zero ? zero : asperity_no_number();
+    asperity_lanes factor, bound;
+    int l;
+    for (l = 0; l < count; l++) {
+        asperity_real f_n = m->f_n[l], approaching = -(m->v[0][l] * m->n[0][l] + m->v[1][l] * m->n[1][l] + m->v[2][l] * m->n[2][l]), dashpot;
+        m->pressed[l] = f_n;
+        factor[l] = damping * ASPERITY_SQRT(m->mass[l] * m->stiffness[l] * share);
+        dashpot = factor[l] * approaching;
+        dashpot = dashpot < -f_n ? -f_n : dashpot; /* never a pull */
+        dashpot = f_n > damps ? dashpot : zero;
+        m->damped[l] = dashpot * approaching * dt;
+        m->f_n[l] = f_n + dashpot;
+        bound[l] = dashpot < zero ? f_n + dashpot : f_n;
+    }
+    for (l = 0; law->tangential > zero && damping > zero && l < count; l++) {
+        if (m->pressed[l] > zero) {
+            const asperity_real f[2] = {m->f_t[0][l], m->f_t[1][l]};
+            const asperity_real d[2] = {law->tangential * factor[l] * m->along[0][l], law->tangential * factor[l] * m->along[1][l]};
+            asperity_real allowed = asperity_allowed(f, d, law->table->friction * bound[l]);
+            m->f_t[0][l] += allowed * d[0];
+            m->f_t[1][l] += allowed * d[1];
+            m->damped[l] += allowed * (d[0] * m->along[0][l] + d[1] * m->along[1][l]) * dt;
+        }
+    }
+    for (l = 0; cohesion && l < count; l++) {
+        m->f_n[l] += m->pull[l].f_n;
+        m->f_t[0][l] += m->pull[l].f_t[0];
+        m->f_t[1][l] += m->pull[l].f_t[1];
+    }
+    for (l = 0; l < count; l++) {
+        asperity_real n[3], e1[3], e2[3], tangential[3], lever[3], f_t0 = m->f_t[0][l], f_t1 = m->f_t[1][l];
+        asperity_of_lane(m->n, l, n);
+        asperity_of_lane(m->e1, l, e1);
+        asperity_of_lane(m->e2, l, e2);
+        tangential[0] = -(f_t0 * e1[0] + f_t1 * e2[0]);
+        tangential[1] = -(f_t0 * e1[1] + f_t1 * e2[1]);
+        tangential[2] = -(f_t0 * e1[2] + f_t1 * e2[2]);
+        asperity_cross(n, tangential, lever);
+        m->size[l] = ASPERITY_SQRT(f_t0 * f_t0 + f_t1 * f_t1);
+        m->force[0][l] = m->f_n[l] * n[0] + tangential[0];
+        m->force[1][l] = m->f_n[l] * n[1] + tangential[1];
+        m->force[2][l] = m->f_n[l] * n[2] + tangential[2];
+        asperity_into_lane(lever, l, m->lever);
+        m->stored[l] /= share; /* the law's work is that of h and d: of what the centres move, `share` */
+        m->plastic[l] /= share;
+        m->friction[l] /= share;
+    }
+}
+
+/* Forces and memories of one lane. */
+ASPERITY_FN void asperity_settle(
+    const asperity_law3d *law, const asperity_contact *before, asperity_contact *after, int turning, asperity_cohesion *cohesion, int l, const asperity_meetings *m,
+    asperity_forces *out) {
+    asperity_real share = law->table->share;
+    int k;
+    if (!asperity_is_finite(m->f_n[l]) || !asperity_is_finite(m->f_t[0][l] + m->f_t[1][l])) {
         asperity_no_answer(ASPERITY_NO_NUMBER, before, after, out);
         return;
     }
-    /* The law's work is that of h and d: of what the centres move, `share`. */
-    c.plastic += answer.plastic / share;
-    c.slip += (answer.friction + moments.lost) / share;
-    out->stored = (answer.stored + moments.stored) / share;
-    f_n = answer.f_n;
-    if (f_n > ASPERITY_R(0.0) && law->damping > ASPERITY_R(0.0)) {
-        factor = law->damping * ASPERITY_SQRT(mass * answer.stiffness * share);
-        dashpot = factor * approaching;
-        dashpot = dashpot < -f_n ? -f_n : dashpot; /* never a pull */
-        out->damped = dashpot * approaching * dt;
-        f_n += dashpot;
-        if (law->tangential > ASPERITY_R(0.0)) {
-            d[0] = law->tangential * factor * along[0];
-            d[1] = law->tangential * factor * along[1];
-            factor = asperity_allowed(answer.f_t, d, law->table->friction * (f_n < answer.f_n ? f_n : answer.f_n));
-            answer.f_t[0] += factor * d[0];
-            answer.f_t[1] += factor * d[1];
-            out->damped += factor * (d[0] * along[0] + d[1] * along[1]) * dt;
-        }
+    after->state = m->state[l];
+    after->axis[0] = m->axis[0][l];
+    after->axis[1] = m->axis[1][l];
+    after->plastic = before->plastic + m->plastic[l];
+    after->slip = before->slip + m->friction[l];
+    for (k = 0; k < 3; k++) {
+        out->force_i[k] = m->force[k][l];
+        out->force_j[k] = -m->force[k][l];
+        out->torque_i[k] = -m->arm_i[l] * m->lever[k][l];
+        out->torque_j[k] = -m->arm_j[l] * m->lever[k][l];
+    }
+    out->f_n = m->f_n[l];
+    out->f_t = m->size[l];
+    out->overlap = m->overlap[l];
+    out->stored = m->stored[l];
+    out->damped = m->damped[l];
+    out->parted = ASPERITY_R(0.0);
+    out->flags = (m->pressed[l] > ASPERITY_R(0.0) ? ASPERITY_TOUCHES : 0) | (asperity_out_of_range(law->table, &m->state[l]) ? ASPERITY_OUT_OF_RANGE : 0);
+    for (k = 0; turning && k < 3; k++) {
+        asperity_real moment = m->moments[l].m_roll[0] * m->e1[k][l] + m->moments[l].m_roll[1] * m->e2[k][l] + m->moments[l].m_twist * m->n[k][l];
+        out->torque_i[k] -= moment;
+        out->torque_j[k] += moment;
     }
     if (cohesion) {
-        f_n += pull.f_n;
-        answer.f_t[0] += pull.f_t[0];
-        answer.f_t[1] += pull.f_t[1];
-        c.slip += pull.slip / share;
-        out->stored += pull.stored / share;
-        out->parted = pull.lost / share;
+        out->stored += m->pull[l].stored / share;
+        out->parted = m->pull[l].lost / share;
+        out->flags |= m->joined[l].joined > ASPERITY_R(0.0) ? ASPERITY_HOLDS : 0;
+        after->slip += m->pull[l].slip / share;
+        *cohesion = m->joined[l];
     }
-    out->f_n = f_n;
-    out->f_t = ASPERITY_SQRT(answer.f_t[0] * answer.f_t[0] + answer.f_t[1] * answer.f_t[1]);
-    out->flags = (answer.f_n > ASPERITY_R(0.0) ? ASPERITY_TOUCHES : 0) | (asperity_out_of_range(law->table, &c.state) ? ASPERITY_OUT_OF_RANGE : 0) |
-                 (cohesion && joined.joined > ASPERITY_R(0.0) ? ASPERITY_HOLDS : 0);
-    for (k = 0; k < 3; k++) {
-        tangential[k] = -(answer.f_t[0] * e1[k] + answer.f_t[1] * e2[k]);
-        out->force_i[k] = f_n * n[k] + tangential[k];
-        out->force_j[k] = -out->force_i[k];
-    }
-    asperity_cross(n, tangential, turn);
-    for (k = 0; k < 3; k++) {
-        out->torque_i[k] = -arm_i * turn[k];
-        out->torque_j[k] = -arm_j * turn[k];
-        if (turning) {
-            out->torque_i[k] -= moments.m_roll[0] * e1[k] + moments.m_roll[1] * e2[k] + moments.m_twist * n[k];
-            out->torque_j[k] += moments.m_roll[0] * e1[k] + moments.m_roll[1] * e2[k] + moments.m_twist * n[k];
+}
+
+/* Two spheres that meet. `after` may be `before`; turning and cohesion change in place, and are NULL where they are left out. */
+typedef struct asperity_pair {
+    const asperity_body *i, *j;
+    const asperity_contact *before;
+    asperity_contact *after;
+    asperity_turning *turning;
+    asperity_cohesion *cohesion;
+    asperity_forces out;
+} asperity_pair;
+
+/* The flag of a pair that has no answer, or 0. */
+ASPERITY_FN int asperity_unanswered(const asperity_law3d *law, asperity_real distance) {
+    return law->table->plane ? ASPERITY_WRONG_TABLE : !asperity_is_finite(distance) || !(distance > ASPERITY_R(0.0)) ? ASPERITY_NO_NUMBER : 0;
+}
+
+/* Many pairs of one law, each by itself; no two share a memory. All have twist and roll or none, and cohesion or none. */
+ASPERITY_FN void asperity_spheres_many(const asperity_law3d *law, asperity_real dt, int count, asperity_pair *pairs) {
+    asperity_meetings m;
+    int flags[ASPERITY_TOGETHER], l;
+    for (; count > 0; count -= ASPERITY_TOGETHER, pairs += ASPERITY_TOGETHER) {
+        int size = count < ASPERITY_TOGETHER ? count : ASPERITY_TOGETHER, turning = pairs->turning != NULL, cohesion = pairs->cohesion != NULL;
+        for (l = 0; l < size; l++) {
+            asperity_bring(pairs[l].i, pairs[l].j, l, &m);
+            m.axis[0][l] = pairs[l].before->axis[0];
+            m.axis[1][l] = pairs[l].before->axis[1];
         }
-    }
-    *after = c;
-    if (cohesion) {
-        *cohesion_after = joined;
+        asperity_meet(law, size, &m);
+        for (l = 0; l < size; l++) {
+            flags[l] = asperity_unanswered(law, m.size[l]);
+        }
+        asperity_set_out(law, dt, size, turning, &m);
+        for (l = 0; l < size; l++) {
+            if (flags[l]) {
+                m.f_n[l] = m.f_t[0][l] = m.f_t[1][l] = m.stiffness[l] = m.stored[l] = m.plastic[l] = m.friction[l] = asperity_no_number();
+            } else {
+                asperity_press(law, &pairs[l].before->state, pairs[l].turning, pairs[l].turning, pairs[l].cohesion, l, &m);
+            }
+        }
+        asperity_act(law, dt, size, cohesion, &m);
+        for (l = 0; l < size; l++) {
+            if (flags[l]) {
+                asperity_no_answer(flags[l], pairs[l].before, pairs[l].after, &pairs[l].out);
+            } else {
+                asperity_settle(law, pairs[l].before, pairs[l].after, turning, pairs[l].cohesion, l, &m, &pairs[l].out);
+            }
+        }
     }
 }
 
@@ -406,36 +491,21 @@ ASPERITY_FN void asperity_contact_forces(
 ASPERITY_FN void asperity_spheres_cohesive(
     const asperity_law3d *law, const asperity_body *i, const asperity_body *j, asperity_real dt, const asperity_contact *before, asperity_contact *after,
     const asperity_turning *turning, asperity_turning *turning_after, const asperity_cohesion *cohesion, asperity_cohesion *cohesion_after, asperity_forces *out) {
-    asperity_real n[3], spin[3], turns[3], v[3], across_i[3], across_j[3], distance, overlap, arm_i, arm_j;
-    int k;
-    if (law->table->plane) {
-        asperity_no_answer(ASPERITY_WRONG_TABLE, before, after, out);
+    asperity_meetings m;
+    int flag;
+    asperity_bring(i, j, 0, &m);
+    m.axis[0][0] = before->axis[0];
+    m.axis[1][0] = before->axis[1];
+    asperity_meet(law, 1, &m);
+    flag = asperity_unanswered(law, m.size[0]);
+    if (flag) {
+        asperity_no_answer(flag, before, after, out);
         return;
     }
-    for (k = 0; k < 3; k++) {
-        n[k] = i->position[k] - j->position[k];
-        spin[k] = ASPERITY_R(0.5) * (i->spin[k] + j->spin[k]);
-        turns[k] = i->spin[k] - j->spin[k];
-    }
-    distance = ASPERITY_SQRT(asperity_dot(n, n));
-    if (!asperity_is_finite(distance) || !(distance > ASPERITY_R(0.0))) {
-        asperity_no_answer(ASPERITY_NO_NUMBER, before, after, out);
-        return;
-    }
-    overlap = i->radius + j->radius - distance;
-    arm_i = i->radius - ASPERITY_R(0.5) * overlap;
-    arm_j = j->radius - ASPERITY_R(0.5) * overlap;
-    for (k = 0; k < 3; k++) {
-        n[k] /= distance;
-    }
-    asperity_cross(i->spin, n, across_i);
-    asperity_cross(j->spin, n, across_j);
-    for (k = 0; k < 3; k++) {
-        v[k] = i->velocity[k] - j->velocity[k] - arm_i * across_i[k] - arm_j * across_j[k];
-    }
-    asperity_contact_forces(
-        law, asperity_table_radius(law->table, i->radius * j->radius / (i->radius + j->radius)), asperity_effective_mass(i->mass, j->mass), overlap, n, v, spin, turns, arm_i, arm_j, dt, before, after, turning,
-        turning_after, cohesion, cohesion_after, out);
+    asperity_set_out(law, dt, 1, turning != NULL, &m);
+    asperity_press(law, &before->state, turning, turning_after, cohesion, 0, &m);
+    asperity_act(law, dt, 1, cohesion != NULL, &m);
+    asperity_settle(law, before, after, turning != NULL, cohesion ? cohesion_after : NULL, 0, &m, out);
 }
 
 /* Two spheres of one material that twist and roll on each other. */
@@ -456,7 +526,8 @@ ASPERITY_FN void asperity_spheres(
 ASPERITY_FN void asperity_sphere_wall_cohesive(
     const asperity_law3d *law, const asperity_body *i, const asperity_wall *wall, asperity_real dt, const asperity_contact *before, asperity_contact *after,
     const asperity_turning *turning, asperity_turning *turning_after, const asperity_cohesion *cohesion, asperity_cohesion *cohesion_after, asperity_forces *out) {
-    asperity_real spin[3], turns[3], v[3], across_i[3], across_wall[3], from[3], distance, arm;
+    asperity_real across_i[3], across_wall[3], from[3], distance, arm;
+    asperity_meetings m;
     int k;
     if (!law->table->plane) {
         asperity_no_answer(ASPERITY_WRONG_TABLE, before, after, out);
@@ -464,8 +535,6 @@ ASPERITY_FN void asperity_sphere_wall_cohesive(
     }
     for (k = 0; k < 3; k++) {
         from[k] = i->position[k] - wall->point[k];
-        spin[k] = ASPERITY_R(0.5) * (i->spin[k] + wall->spin[k]);
-        turns[k] = i->spin[k] - wall->spin[k];
     }
     distance = asperity_dot(from, wall->normal);
     arm = distance < i->radius ? distance : i->radius;
@@ -475,10 +544,22 @@ ASPERITY_FN void asperity_sphere_wall_cohesive(
     asperity_cross(i->spin, wall->normal, across_i);
     asperity_cross(wall->spin, from, across_wall);
     for (k = 0; k < 3; k++) {
-        v[k] = i->velocity[k] - arm * across_i[k] - wall->velocity[k] - across_wall[k];
+        m.n[k][0] = wall->normal[k];
+        m.v[k][0] = i->velocity[k] - arm * across_i[k] - wall->velocity[k] - across_wall[k];
+        m.spin_i[k][0] = i->spin[k];
+        m.spin_j[k][0] = wall->spin[k];
     }
-    asperity_contact_forces(law, i->radius / law->table->effective_radius, asperity_damped_mass(i->mass), i->radius - distance, wall->normal, v, spin, turns, arm, ASPERITY_R(0.0), dt, before, after,
-        turning, turning_after, cohesion, cohesion_after, out);
+    m.axis[0][0] = before->axis[0];
+    m.axis[1][0] = before->axis[1];
+    m.radius[0] = i->radius / law->table->effective_radius;
+    m.mass[0] = asperity_damped_mass(i->mass);
+    m.overlap[0] = i->radius - distance;
+    m.arm_i[0] = arm;
+    m.arm_j[0] = ASPERITY_R(0.0);
+    asperity_set_out(law, dt, 1, turning != NULL, &m);
+    asperity_press(law, &before->state, turning, turning_after, cohesion, 0, &m);
+    asperity_act(law, dt, 1, cohesion != NULL, &m);
+    asperity_settle(law, before, after, turning != NULL, cohesion ? cohesion_after : NULL, 0, &m, out);
 }
 
 /* A sphere that twists and rolls on a rigid plane. */

@@ -27,6 +27,7 @@ const PARTS: [(&str, &str); 8] = [
 ];
 const HEADER_TURNING: &str = include_str!("asperity_turning.h");
 const HEADER_COHESION: &str = include_str!("asperity_cohesion.h");
+const HEADER_FRAME: &str = include_str!("asperity_frame.h");
 const HEADER_3D: &str = include_str!("asperity_contact3d.h");
 const CHECK: &str = include_str!("asperity_contact_check.c");
 
@@ -36,6 +37,8 @@ pub const HEADER_NAME: &str = "asperity_contact.h";
 pub const TURNING_NAME: &str = "asperity_turning.h";
 /// Name of what holds surfaces together.
 pub const COHESION_NAME: &str = "asperity_cohesion.h";
+/// Name of what turns a contact's frame.
+pub const FRAME_NAME: &str = "asperity_frame.h";
 
 /// The update, which is the same for every law.
 pub fn header() -> String {
@@ -97,6 +100,11 @@ pub fn header_turning() -> String {
 /// Its use for a contact whose surfaces attract each other.
 pub fn header_cohesion() -> String {
     HEADER_COHESION.to_owned()
+}
+
+/// The memory of a contact in three dimensions, and its frame.
+pub fn header_frame() -> String {
+    HEADER_FRAME.to_owned()
 }
 
 /// Its use in three dimensions.

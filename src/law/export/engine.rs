@@ -5,8 +5,8 @@ use super::vectors::{SEED, unit_vectors};
 use crate::case::Case;
 use crate::contact_law::SLIDERS;
 use crate::contact_law::export::{
-    COHESION_NAME, EngineTable, HEADER_NAME, TURNING_NAME, check_program, fill, header, header_3d, header_cohesion,
-    header_turning,
+    COHESION_NAME, EngineTable, FRAME_NAME, HEADER_NAME, TURNING_NAME, check_program, fill, header, header_3d, header_cohesion,
+    header_frame, header_turning,
 };
 use crate::law::range::OutOfRange;
 use crate::law::table::{Against, is_on_a_flat};
@@ -149,6 +149,7 @@ pub fn engine_files(law: &LawFile, case: Option<&Case>) -> Result<Vec<ExportedFi
         ("asperity_contact3d.h", header_3d()),
         (TURNING_NAME, header_turning()),
         (COHESION_NAME, header_cohesion()),
+        (FRAME_NAME, header_frame()),
         ("asperity_law_vectors.csv", vectors),
         ("asperity_contact_check.c", check_program("asperity_contact_check.c")),
     ]

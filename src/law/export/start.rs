@@ -7,7 +7,7 @@ use super::engine::{TableFile, beyond_the_law, table_file};
 use super::file::ExportedFile;
 use crate::case::{Case, Friction, Opponent, Segment};
 use crate::contact_law::export::{
-    COHESION_NAME, HEADER_NAME, TURNING_NAME, fill, header, header_3d, header_cohesion, header_turning,
+    COHESION_NAME, FRAME_NAME, HEADER_NAME, TURNING_NAME, fill, header, header_3d, header_cohesion, header_frame, header_turning,
 };
 use crate::law::range::{OutOfRange, clamped};
 use crate::law::{LawError, LawFile};
@@ -100,6 +100,7 @@ pub fn start_files(law: &LawFile, engine: Engine, cases: &[(String, Case)]) -> R
             ExportedFile { name: "asperity_contact3d.h".to_owned(), content: header_3d() },
             ExportedFile { name: TURNING_NAME.to_owned(), content: header_turning() },
             ExportedFile { name: COHESION_NAME.to_owned(), content: header_cohesion() },
+            ExportedFile { name: FRAME_NAME.to_owned(), content: header_frame() },
         ],
     };
     start.files.splice(0..0, first);
