@@ -106,6 +106,9 @@ typedef uint64_t asperity_bits;
 enum { ASPERITY_LN_FORCE, ASPERITY_LN_STIFFNESS, ASPERITY_RECOVERED, ASPERITY_GAMMA, ASPERITY_SOLVED,
        ASPERITY_FIRST_N = ASPERITY_SOLVED, ASPERITY_UNSHEARED_N, ASPERITY_RADIAL_SLIP, ASPERITY_SUDDEN, ASPERITY_SOFTENING, ASPERITY_RADIUS, ASPERITY_COLUMNS };
 
+/* What a step is to find: the forces, also their slopes, or of several contacts only those that do not yield. */
+enum { ASPERITY_FORCES, ASPERITY_SLOPES, ASPERITY_ELASTIC };
+
 /* Shapes over r/mu, and that of the vertex over its distance: the steady loss A, the steady flow, the flow with a growing yield factor, the loss B at the vertex. */
 enum { ASPERITY_LOST, ASPERITY_FLOW, ASPERITY_MOBILISED, ASPERITY_VERTEX, ASPERITY_SHAPES };
 
@@ -240,110 +243,7 @@ ASPERITY_FN double asperity_logarithm(double x);
 ASPERITY_FN double asperity_exponential(double x);
 #include "asperity_series.h"
 
-/* 1/sqrt(x), x >= 0, finite at 0: a first guess by the exponent's bits and Newton's steps. No call, no division: a compiler does it for several lanes whatever its flags. */
-ASPERITY_FN double asperity_inverse_root(double x) {
-    double half = 0.5 * x, y;
-    uint64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    bits = 0x5fe6eb50c7b537a9ull - (bits >> 1);
-    memcpy(&y, &bits, sizeof bits);
-    y *= ASPERITY_FMA(-half * y, y, 1.5);
-    y *= ASPERITY_FMA(-half * y, y, 1.5);
-    y *= ASPERITY_FMA(-half * y, y, 1.5);
-    y *= ASPERITY_FMA(-half * y, y, 1.5);
-    return y;
-}
-
-/* ln x, x > 0, in line: of 2^k c (1 + r), with c from 32 places and |r| <= 1/64. */
-ASPERITY_FN double asperity_logarithm(double x) {
-    static const double inverse[32] = {
-        1.4223978268922088, 1.391468746307456, 1.3618562535370686, 1.3334780249593055, 1.3062584608976362, 1.2801280128012802, 1.2550225896376046, 1.2308830328247804,
-        1.207654650645305, 1.1852868044242475, 1.163732539879329, 1.1429482579925057, 1.122893420546364, 1.1035302861389817, 1.084823673058967, 1.066740745885131,
-        1.0492508230867432, 1.0323252032520325, 1.0159370078740158, 1.0, 0.9699196326061997, 0.9413800562405364, 0.9144723412941417, 0.8890603897356743,
-        0.8650228310502284, 0.8422510822510821, 0.8206477067236561, 0.8001250195343023, 0.7806038970697605, 0.7620127569099929, 0.7442866801893171, 0.7273666537517758};
-    static const double log_c[32] = {
-        -0.3523440580008923, -0.3303598412985515, -0.3088486614358244, -0.28779058528352974, -0.26716691395221637, -0.2469600829318592, -0.2271535721329931,
-        -0.2077318246738307, -0.18868017341225488, -0.1699847743527869, -0.1516325461705557, -0.1336111151900369, -0.11590876523852209, -0.09851439186497558,
-        -0.08141746047599635, -0.06460796799339279, -0.0480764076837151, -0.03181373684993537, -0.01581134711020277, 0.0, 0.030542063900505807, 0.06040833545244689,
-        0.08940805622954394, 0.11759011581397946, 0.1449993781208599, 0.1716771117439915, 0.1976613642714418, 0.22298728910590676, 0.24768743184511172,
-        0.2717919820839289, 0.2953289955317206, 0.31832459054884527};
-    const uint64_t from = 0x3fe6400000000000ull;
-    const int digits = 52;
-    const double least = 1e-300, greatest = 1e300;
-    int64_t away;
-    uint64_t bits;
-    double z, r, k;
-    int place;
-    if (!(x > least && x < greatest)) {
-        return log(x);
-    }
-    memcpy(&bits, &x, sizeof bits);
-    away = (int64_t)bits - (int64_t)from;
-    place = (int)(away >> (digits - 5)) & 31;
-    k = (double)(int)(away >> digits);
-    bits -= (uint64_t)((away >> digits) * ((int64_t)1 << digits));
-    memcpy(&z, &bits, sizeof z);
-    r = ASPERITY_FMA(z, inverse[place], -1.0);
-    return ASPERITY_FMA(k, 0.6931471805599453, log_c[place]) + asperity_log_series(r);
-}
-
-/* e^x of one number, in the range of the other: 2^(k/32) e^r. */
-ASPERITY_FN double asperity_exponential(double x) {
-    static const double root[32] = {
-        1.0, 1.0218971486541166, 1.0442737824274138, 1.0671404006768237, 1.0905077326652577, 1.1143867425958924, 1.1387886347566916, 1.1637248587775775,
-        1.189207115002721, 1.215247359980469, 1.241857812073484, 1.2690509571917332, 1.2968395546510096, 1.3252366431597413, 1.3542555469368927, 1.383909881963832,
-        1.4142135623730951, 1.4451808069770467, 1.4768261459394993, 1.5091644275934228, 1.5422108254079407, 1.5759808451078865, 1.6104903319492543, 1.645755478153965,
-        1.681792830507429, 1.718619298122478, 1.7562521603732995, 1.7947090750031072, 1.8340080864093424, 1.8741676341103, 1.9152065613971474, 1.9571441241754002};
-    const double most = 700.0, high = 0.021660849335603416, low = 5.689487495325457e-11;
-    const int digits = 52;
-    double r = x, r2, scaled;
-    uint64_t bits;
-    int k;
-    r = r < most ? r : most;
-    r = r > -most ? r : -most;
-    k = (int)(r * 46.16624130844683 + 32768.5) - 32768;
-    r = ASPERITY_FMA((double)k, -low, ASPERITY_FMA((double)k, -high, r));
-    r2 = r * r;
-    scaled = root[k & 31];
-    memcpy(&bits, &scaled, sizeof bits);
-    bits += (uint64_t)(k >> 5) << digits;
-    memcpy(&scaled, &bits, sizeof bits);
-    x = ASPERITY_FMA(r2, ASPERITY_FMA(r2, 1.0 / 720.0, ASPERITY_FMA(r, 1.0 / 120.0, 1.0 / 24.0)), ASPERITY_FMA(r, 1.0 / 6.0, 1.0 / 2.0));
-    return ASPERITY_FMA(scaled, ASPERITY_FMA(r2, x, r), scaled);
-}
-
-ASPERITY_FN void asperity_gather_row(const asperity_real *from, int place, int count, double *to) {
-    int i;
-    for (i = 0; i < count; i++) {
-        to[i] = (double)from[place + i];
-    }
-}
-
-/* Shares of the sliders in k_T: (i/7)^0.65 inside the end of cell i. */
-ASPERITY_FN const double *asperity_weights(void) {
-    static const double weight[ASPERITY_PADDED] = {
-        0.28228007246945605, 0.16067234912498195, 0.1335715962968834, 0.11854658577836137, 0.10849433246541654, 0.10110285024062748, 0.09533221362427317, 0.0};
-    return weight;
-}
-
-ASPERITY_FN const double *asperity_per_weights(void) {
-    static const double per_weight[ASPERITY_PADDED] = {
-        3.5425809241571757, 6.223846265060402, 7.486621615102558, 8.435502325386521, 9.21707131862172, 9.890917987178138, 10.489633692355417, 0.0};
-    return per_weight;
-}
-
-/* Levers of the sliders in a twist, over the contact's radius: those of punches as wide as their cells. */
-ASPERITY_FN const double *asperity_levers(void) {
-    static const double lever[ASPERITY_PADDED] = {@LEVERS@, 0.0};
-    return lever;
-}
-
-/* Where the sectors are pulled by a twist. */
-ASPERITY_FN const double *asperity_around(int sector) {
-    static const double around[ASPERITY_SECTORS][2] = {{0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}, {1.0, 0.0}};
-    return around[sector];
-}
-
+#include "asperity_numbers.h"
 #include "asperity_sliders.h"
 #include "asperity_guess.h"
 #include "asperity_move.h"
@@ -387,7 +287,7 @@ ASPERITY_FN const double *asperity_around(int sector) {
 #define ASPERITY_TWISTS(p) 0
 #define ASPERITY_KEPT ASPERITY_SOFTENING
 #define ASPERITY_TRIES 8 /* the few contacts that need more are moved by themselves */
-#define ASPERITY_NEAR 1e-10
+#define ASPERITY_NEAR 1e-9
 #define ASPERITY_ENOUGH 0.0
 #define ASPERITY_LOOP ASPERITY_UNROLL
 #if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 8
@@ -603,7 +503,7 @@ ASPERITY_FN void asperity_advance(
         return;
     }
     asperity_begin(state, &s);
-    asperity_move(t, &s, twist, by.h, by.d, tangent != NULL, &first, &after, &o);
+    asperity_move(t, &s, twist, by.h, by.d, tangent ? ASPERITY_SLOPES : ASPERITY_FORCES, &first, &after, &o);
     a.old_f_n = first.old_f_n;
     a.old_f_t[0] = first.old_f_t[0];
     a.old_f_t[1] = first.old_f_t[1];
@@ -647,165 +547,7 @@ ASPERITY_FN void asperity_update(
     asperity_advance(t, radius, modulus, state, NULL, h, increment, next, out, tangent);
 }
 
-/* The increment of one contact of several. `next` may be `state`. */
-typedef struct asperity_increment {
-    const asperity_state *state;
-    asperity_state *next;
-    asperity_real radius, h, d[2];
-    asperity_response out;
-} asperity_increment;
-
-#if ASPERITY_WIDTH > 1
-/* Puts memories into lanes, and takes them from there: the numbers of both stand in the same order. */
-ASPERITY_FN void asperity_load(const asperity_state *const from[ASPERITY_WIDTH], asperity_wide_work *to) {
-    asperity_wide_v *at = &to->h;
-    int i, k;
-#ifdef ASPERITY_TRANSPOSES
-    for (i = 0; i < ASPERITY_NUMBERS; i += 8) {
-        __m512d x[8];
-        for (k = 0; k < 8; k++) {
-            x[k] = _mm512_loadu_pd(&from[k]->h + i);
-        }
-        asperity_transpose(x);
-        for (k = 0; k < 8; k++) {
-            at[i + k] = (asperity_wide_v)x[k];
-        }
-    }
-#else
-    for (k = 0; k < ASPERITY_WIDTH; k++) {
-        const asperity_real *numbers = &from[k]->h;
-        for (i = 0; i < ASPERITY_NUMBERS; i++) {
-            at[i][k] = (double)numbers[i];
-        }
-    }
-#endif
-}
-
-ASPERITY_FN void asperity_unload(const asperity_wide_work *from, asperity_state *const to[ASPERITY_WIDTH]) {
-    const asperity_wide_v *at = &from->h;
-    int i, k;
-#ifdef ASPERITY_TRANSPOSES
-    for (i = 0; i < ASPERITY_NUMBERS; i += 8) {
-        __m512d x[8];
-        for (k = 0; k < 8; k++) {
-            x[k] = (__m512d)at[i + k];
-        }
-        asperity_transpose(x);
-        for (k = 0; k < 8; k++) {
-            if (to[k]) {
-                _mm512_storeu_pd(&to[k]->h + i, x[k]);
-            }
-        }
-    }
-#else
-    for (k = 0; k < ASPERITY_WIDTH; k++) {
-        asperity_real *numbers = to[k] ? &to[k]->h : NULL;
-        for (i = 0; numbers && i < ASPERITY_NUMBERS; i++) {
-            numbers[i] = ASPERITY_R(at[i][k]);
-        }
-        if (numbers) {
-            asperity_round_down(&to[k]->hardened, from->hardened[k]);
-        }
-    }
-#endif
-}
-
-/* Of which contacts the memory is one that the update may have left: see asperity_is_sound(). */
-ASPERITY_FN asperity_wide_m asperity_are_sound(const asperity_wide_work *s) {
-    asperity_wide_v sum = s->vertex[0] + s->vertex[1], others = s->h_max + s->hardened + s->reach + s->softened + s->released + s->worn + s->stiffened;
-    int i;
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        sum += s->slider[0][i] + s->slider[1][i] + s->slider[2][i];
-    }
-    return asperity_wide_are_finite(s->h) & asperity_wide_are_finite(s->approach) & asperity_wide_are_finite(sum) & asperity_wide_are_finite(others) & (s->h_max >= 0.0) &
-           (s->hardened >= 0.0) & (s->reach >= 0.0) & (s->softened >= 0.0) & (s->softened < 1.0) & (s->released >= 0.0) & (s->released <= 1.0) & (s->worn >= 0.0) & (s->worn <= 2.0) &
-           (s->stiffened >= 0.0);
-}
-
-/* Moves up to ASPERITY_WIDTH contacts side by side. */
-ASPERITY_FN void asperity_advance_wide(const asperity_table *t, asperity_real modulus, int count, asperity_increment *const which[], const asperity_entry by[]) {
-    const asperity_state *before[ASPERITY_WIDTH];
-    asperity_state *next[ASPERITY_WIDTH];
-    asperity_wide_work s, after;
-    asperity_wide_step first;
-    asperity_wide_guess o;
-    asperity_wide_v h = asperity_wide_all(0.0), d[2], radius = h, force, total, slip, plastic;
-    asperity_wide_m found, odd;
-    int k;
-    d[0] = d[1] = h;
-    for (k = 0; k < ASPERITY_WIDTH; k++) {
-        const int from = k < count ? k : 0; /* who is missing is stood in for */
-        before[k] = which[from]->state;
-        h[k] = by[from].h;
-        d[0][k] = by[from].d[0];
-        d[1][k] = by[from].d[1];
-        radius[k] = (double)which[from]->radius;
-    }
-    asperity_load(before, &s);
-    found = asperity_are_sound(&s);
-    found &= asperity_wide_move(t, &s, NULL, h, d, 0, &first, &after, &o);
-    /* As asperity_answer(). */
-    found &= asperity_wide_are_finite(o.stored) & asperity_wide_are_finite(o.f_n + o.f_t[0] + o.f_t[1]);
-    total = 0.5 * ((first.old_f_n + o.f_n) * (h - s.h) + (first.old_f_t[0] + o.f_t[0]) * d[0] + (first.old_f_t[1] + o.f_t[1]) * d[1]);
-    total -= o.stored - (first.old_stored[0] + first.old_stored[1]);
-    total = asperity_wide_choose(~(o.f_n > 0.0) & (total < 0.0), asperity_wide_all(0.0), total);
-    slip = asperity_wide_choose(o.friction > 0.0, o.friction, asperity_wide_all(0.0));
-    odd = ~o.plastic | (total < 0.0) | (o.friction > total);
-    slip = asperity_wide_choose(odd, total, slip);
-    force = (double)modulus * radius * radius;
-    plastic = (total - slip) * force * radius;
-    slip *= force * radius;
-    o.f_n *= force;
-    o.f_t[0] *= force;
-    o.f_t[1] *= force;
-    o.stored *= force * radius;
-    o.stiffness *= (double)modulus * radius;
-    for (k = 0; k < ASPERITY_WIDTH; k++) {
-        next[k] = k < count && found[k] ? which[k]->next : NULL;
-    }
-    for (k = 0; k < count; k++) {
-        asperity_increment *one = which[k];
-        if (next[k]) {
-            one->out.f_n = ASPERITY_R(o.f_n[k]);
-            one->out.f_t[0] = ASPERITY_R(o.f_t[0][k]);
-            one->out.f_t[1] = ASPERITY_R(o.f_t[1][k]);
-            one->out.stiffness = ASPERITY_R(o.stiffness[k]);
-            one->out.stored = ASPERITY_R(o.stored[k]);
-            one->out.plastic = ASPERITY_R(plastic[k]);
-            one->out.friction = ASPERITY_R(slip[k]);
-        } else {
-            asperity_advance(t, one->radius, modulus, one->state, NULL, one->h, one->d, one->next, &one->out, NULL);
-        }
-    }
-    asperity_unload(&after, next);
-}
-#endif
-
-/* Moves several contacts of one law, each as asperity_update() moves it: by the same equations, to rounding. What one contact gets does not depend on the others, to the last bit. With
- * vectors of the machine several are solved side by side. */
-ASPERITY_FN void asperity_update_many(const asperity_table *t, asperity_real modulus, int count, asperity_increment *increments) {
-#if ASPERITY_WIDTH > 1
-    asperity_increment *which[ASPERITY_WIDTH];
-    asperity_entry by[ASPERITY_WIDTH];
-    int waiting = 0, k;
-    for (k = 0; k < count; k++) {
-        asperity_increment *one = &increments[k];
-        if (asperity_enter(one->radius, one->state, 1, one->h, one->d, one->next, &one->out, NULL, &by[waiting])) {
-            which[waiting++] = one;
-        }
-        if (waiting == ASPERITY_WIDTH || (waiting > 0 && k + 1 == count)) {
-            asperity_advance_wide(t, modulus, waiting, which, by);
-            waiting = 0;
-        }
-    }
-#else
-    int k;
-    for (k = 0; k < count; k++) {
-        asperity_increment *one = &increments[k];
-        asperity_update(t, one->radius, modulus, one->state, one->h, one->d, one->next, &one->out, NULL);
-    }
-#endif
-}
+#include "asperity_several.h"
 
 /* Elastic energy that a contact stores. */
 ASPERITY_FN asperity_real asperity_stored_energy(const asperity_table *t, asperity_real radius, asperity_real modulus, const asperity_state *state) {

@@ -198,6 +198,7 @@ typedef struct asperity_meetings {
     asperity_attraction pull[ASPERITY_TOGETHER];
     asperity_cohesion joined[ASPERITY_TOGETHER];
     asperity_state state[ASPERITY_TOGETHER]; /* after the update */
+    int flags[ASPERITY_TOGETHER];            /* of those that have no answer */
 } asperity_meetings;
 
 /* Two spheres into a lane. */
@@ -317,6 +318,17 @@ ASPERITY_FN void asperity_set_out(const asperity_law3d *law, asperity_real dt, i
     }
 }
 
+/* The answer of the update into a lane. */
+ASPERITY_INLINE void asperity_take(const asperity_response *answer, int l, asperity_meetings *m) {
+    m->f_n[l] = answer->f_n;
+    m->f_t[0][l] = answer->f_t[0];
+    m->f_t[1][l] = answer->f_t[1];
+    m->stiffness[l] = answer->stiffness;
+    m->stored[l] = answer->stored;
+    m->plastic[l] = answer->plastic;
+    m->friction[l] = answer->friction;
+}
+
 /* The update of one lane. `turning` is NULL where twist and roll are left out, `cohesion` where that is. */
 ASPERITY_FN void asperity_press(
     const asperity_law3d *law, const asperity_state *before, const asperity_turning *turning, asperity_turning *turning_after, const asperity_cohesion *cohesion, int l,
@@ -335,13 +347,7 @@ ASPERITY_FN void asperity_press(
     if (cohesion) {
         asperity_cohere(&law->cohesion, law->table, m->radius[l], law->modulus, before, &m->state[l], cohesion, d, &m->joined[l], &m->pull[l]);
     }
-    m->f_n[l] = answer.f_n;
-    m->f_t[0][l] = answer.f_t[0];
-    m->f_t[1][l] = answer.f_t[1];
-    m->stiffness[l] = answer.stiffness;
-    m->stored[l] = answer.stored;
-    m->plastic[l] = answer.plastic;
-    m->friction[l] = answer.friction;
+    asperity_take(&answer, l, m);
 }
 
 /* After the update: the forces, from what it answered. `cohesion`: whether that adds to them. */
@@ -452,39 +458,7 @@ ASPERITY_FN int asperity_unanswered(const asperity_law3d *law, asperity_real dis
     return law->table->plane ? ASPERITY_WRONG_TABLE : !asperity_is_finite(distance) || !(distance > ASPERITY_R(0.0)) ? ASPERITY_NO_NUMBER : 0;
 }
 
-/* Many pairs of one law, each by itself; no two share a memory. All have twist and roll or none, and cohesion or none. */
-ASPERITY_FN void asperity_spheres_many(const asperity_law3d *law, asperity_real dt, int count, asperity_pair *pairs) {
-    asperity_meetings m;
-    int flags[ASPERITY_TOGETHER], l;
-    for (; count > 0; count -= ASPERITY_TOGETHER, pairs += ASPERITY_TOGETHER) {
-        int size = count < ASPERITY_TOGETHER ? count : ASPERITY_TOGETHER, turning = pairs->turning != NULL, cohesion = pairs->cohesion != NULL;
-        for (l = 0; l < size; l++) {
-            asperity_bring(pairs[l].i, pairs[l].j, l, &m);
-            m.axis[0][l] = pairs[l].before->axis[0];
-            m.axis[1][l] = pairs[l].before->axis[1];
-        }
-        asperity_meet(law, size, &m);
-        for (l = 0; l < size; l++) {
-            flags[l] = asperity_unanswered(law, m.size[l]);
-        }
-        asperity_set_out(law, dt, size, turning, &m);
-        for (l = 0; l < size; l++) {
-            if (flags[l]) {
-                m.f_n[l] = m.f_t[0][l] = m.f_t[1][l] = m.stiffness[l] = m.stored[l] = m.plastic[l] = m.friction[l] = asperity_no_number();
-            } else {
-                asperity_press(law, &pairs[l].before->state, pairs[l].turning, pairs[l].turning, pairs[l].cohesion, l, &m);
-            }
-        }
-        asperity_act(law, dt, size, cohesion, &m);
-        for (l = 0; l < size; l++) {
-            if (flags[l]) {
-                asperity_no_answer(flags[l], pairs[l].before, pairs[l].after, &pairs[l].out);
-            } else {
-                asperity_settle(law, pairs[l].before, pairs[l].after, turning, pairs[l].cohesion, l, &m, &pairs[l].out);
-            }
-        }
-    }
-}
+#include "asperity_many.h"
 
 /* Two spheres of one material that hold each other by cohesion and, unless `turning` is NULL, twist and roll. What is after may be what is before, and they must be kept or dropped
  * together. */

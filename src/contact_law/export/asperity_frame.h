@@ -60,11 +60,13 @@ ASPERITY_FN int asperity_may_forget_cohesive(const asperity_contact *contact, co
 #define ASPERITY_INLINE ASPERITY_FN
 #endif
 
-/* Contacts that asperity_spheres_many() takes in one go; a thread of a GPU has one. */
+/* Contacts whose geometry is in lanes, and how many such blocks asperity_spheres_many() takes in one go; a thread of a GPU has one contact. */
 #ifdef __CUDACC__
 #define ASPERITY_TOGETHER 1
+#define ASPERITY_BLOCKS 1
 #else
 #define ASPERITY_TOGETHER 8
+#define ASPERITY_BLOCKS 8
 #endif
 
 typedef asperity_real asperity_lanes[ASPERITY_TOGETHER];

@@ -396,9 +396,10 @@ ASPERITY_FN void asperity_solution_slopes(const asperity_step *p, asperity_guess
 }
 #endif
 
-/* One step. What was stored and done before is left in p. Returns of which contacts the answer was found; of one it always is. */
+/* One step. What was stored and done before is left in p. Returns of which contacts the answer was found; of one it always is, and of several none that yields where `what` is
+ * ASPERITY_ELASTIC. */
 ASPERITY_FN asperity_m asperity_move(
-    const asperity_table *t, const asperity_work *s, const asperity_twist *twist, asperity_v h, const asperity_v d[2], int slopes, asperity_step *p, asperity_work *next,
+    const asperity_table *t, const asperity_work *s, const asperity_twist *twist, asperity_v h, const asperity_v d[2], int what, asperity_step *p, asperity_work *next,
     asperity_guess *ASPERITY_ALONE o) {
     asperity_v softening, released, r[2], start[2], y, guess, gamma, load, factor, elastic[5], none = asperity_all(0.0);
     asperity_m touches, flows, found;
@@ -431,7 +432,7 @@ ASPERITY_FN asperity_m asperity_move(
     if (ASPERITY_SEVERAL || !asperity_any(flows)) {
 #if !ASPERITY_SEVERAL
         memset(o->tangent, 0, sizeof o->tangent);
-        if (slopes && touches) {
+        if (what == ASPERITY_SLOPES && touches) {
             asperity_wear_slopes(p, o);
             asperity_elastic_slopes(p, o);
         }
@@ -439,8 +440,8 @@ ASPERITY_FN asperity_m asperity_move(
         o->stored = asperity_choose(touches, o->f_n * o->e / (gamma + 1.0) + asperity_slider_energy(o->slider[0], o->slider[1], p->row.stiff), none);
         o->stiffness = asperity_choose(touches, gamma * o->f_n / o->e, none);
         asperity_keep(p, o, ASPERITY_EVERY, asperity_not(ASPERITY_EVERY), none, s->softened, released, next);
-        if (!asperity_any(flows)) {
-            return ASPERITY_EVERY;
+        if (what == ASPERITY_ELASTIC || !asperity_any(flows)) {
+            return asperity_not(flows);
         }
     }
     elastic[0] = o->f_n;
@@ -448,7 +449,6 @@ ASPERITY_FN asperity_m asperity_move(
     elastic[2] = o->f_t[1];
     elastic[3] = o->stored;
     elastic[4] = o->stiffness;
-    (void)slopes; /* of several there are none */
     p->radial = asperity_column(t, &p->row, ASPERITY_RADIAL_SLIP);
     p->sudden = asperity_column(t, &p->row, ASPERITY_SUDDEN);
     start[0] = r[0];
@@ -463,7 +463,7 @@ ASPERITY_FN asperity_m asperity_move(
     if (!found) {
         y = asperity_bracket(p, guess, start, o);
     }
-    if (slopes) {
+    if (what == ASPERITY_SLOPES) {
         asperity_wear_slopes(p, o);
         asperity_solution_slopes(p, o);
     }

@@ -14,16 +14,20 @@ use super::table::{LEVELS, PLACES, ROWS};
 use super::turning_constants::{LEVERS, LEVERS_SQUARED, TWIST_FOLLOWS, TWIST_LEVER, TWIST_STIFF, TurningConstants};
 
 const HEADER: &str = include_str!("asperity_contact.h");
-/// What it is made of: the update's files are in it twice, for one contact and for several.
-const PARTS: [(&str, &str); 8] = [
+/// What it and others are made of: the update's files are in it twice, for one contact and for
+/// several.
+const PARTS: [(&str, &str); 11] = [
     ("asperity_series.h", include_str!("asperity_series.h")),
+    ("asperity_numbers.h", include_str!("asperity_numbers.h")),
     ("asperity_sliders.h", include_str!("asperity_sliders.h")),
     ("asperity_guess.h", include_str!("asperity_guess.h")),
     ("asperity_move.h", include_str!("asperity_move.h")),
     ("asperity_wide.h", include_str!("asperity_wide.h")),
     ("asperity_wide_names.h", include_str!("asperity_wide_names.h")),
     ("asperity_wide_end.h", include_str!("asperity_wide_end.h")),
+    ("asperity_several.h", include_str!("asperity_several.h")),
     ("asperity_file.h", include_str!("asperity_file.h")),
+    ("asperity_many.h", include_str!("asperity_many.h")),
 ];
 const HEADER_TURNING: &str = include_str!("asperity_turning.h");
 const HEADER_COHESION: &str = include_str!("asperity_cohesion.h");
@@ -55,9 +59,12 @@ pub fn header() -> String {
     ];
     let numbers = numbers.map(|(name, value)| (name, format!("{value:?}")));
     let version = [("VERSION", env!("CARGO_PKG_VERSION").to_owned())];
-    let whole =
-        PARTS.iter().fold(HEADER.to_owned(), |text, (name, part)| text.replace(&format!("#include \"{name}\"\n"), part));
-    fill(&whole, version.into_iter().chain(sizes).chain(numbers).chain(of_a_twist()))
+    fill(&whole(HEADER), version.into_iter().chain(sizes).chain(numbers).chain(of_a_twist()))
+}
+
+/// A header with the parts that it includes.
+fn whole(header: &str) -> String {
+    PARTS.iter().fold(header.to_owned(), |text, (name, part)| text.replace(&format!("#include \"{name}\"\n"), part))
 }
 
 /// What the update needs of a twist.
@@ -109,7 +116,7 @@ pub fn header_frame() -> String {
 
 /// Its use in three dimensions.
 pub fn header_3d() -> String {
-    HEADER_3D.to_owned()
+    whole(HEADER_3D)
 }
 
 /// The program that compares a C export with the test vectors, under a name.
