@@ -15,6 +15,7 @@ pub(super) type Sectors = [[[f64; SLIDERS]; 2]; SECTORS];
 const AROUND: [[f64; 2]; SECTORS] = [[0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [1.0, 0.0]];
 
 /// A twist within a step.
+#[derive(Clone)]
 pub(super) struct Twist {
     /// Displacement at the contact's radius.
     pub(super) along: f64,

@@ -13,11 +13,17 @@ use super::turning_constants::TurningConstants;
 
 /// Steps of Newton.
 const STEPS: usize = 20;
-/// Steps of a bracket where Newton does not find the way.
+/// Parts of a step, at the most, where Newton does not find the way.
+const PARTS: u32 = 8;
+/// Steps of a bracket where no parts do.
 const BRACKETS: usize = 100;
-/// Steps for the ratio at a hardening, and times that one is halved.
-const RATIOS: usize = 100;
-const BACK: usize = 12;
+/// Steps for the ratio at a hardening, greatest one over mu; on the way to it, and of its bracket,
+/// before halves and of halves.
+const RATIOS: usize = 50;
+const SHORT: f64 = 1.0 / 15.0;
+const WAYS: usize = 400;
+const SLOWLY: usize = 600;
+const HALVES: usize = 20;
 /// Hardening of a step over the depth and the elastic approach, at the most.
 const MOST_HARDENING: f64 = 3.0;
 /// Of F_N over the yield force and of F_T/F_N.
@@ -78,13 +84,48 @@ pub(super) fn moved(table: &Table, state: &ContactState, h: f64, d: [f64; 2]) ->
 
 /// The same with a twist, or none: its sectors' forces and its vertex after the step, where there
 /// is contact.
-pub(super) fn moved_with(
-    table: &Table,
-    state: &ContactState,
-    twist: Option<&Twist>,
-    h: f64,
-    d: [f64; 2],
-) -> (ContactState, ContactResponse, Option<(Sectors, f64)>) {
+///
+/// A step that is so long that Newton's method does not find its answer is taken in parts: flow
+/// that fades at full slip may leave it several, and a slower one comes to the right one. The
+/// tangent is that of the last part.
+pub(super) fn moved_with(table: &Table, state: &ContactState, twist: Option<&Twist>, h: f64, d: [f64; 2]) -> Moved {
+    let mut parts = 1;
+    loop {
+        if let Some(moved) = moved_in(parts, table, state, twist, h, d) {
+            return moved;
+        }
+        parts *= 2;
+    }
+}
+
+/// State, answer, and of a twist the sectors' forces and the vertex.
+type Moved = (ContactState, ContactResponse, Option<(Sectors, f64)>);
+
+/// A step in so many parts; none where the answer of one was not found. Of [`PARTS`], by a bracket
+/// where nothing else does, they always are.
+fn moved_in(parts: u32, table: &Table, state: &ContactState, twist: Option<&Twist>, h: f64, d: [f64; 2]) -> Option<Moved> {
+    let share = 1.0 / f64::from(parts);
+    let mut from = *state;
+    let mut turn = twist.map(|twist| {
+        let trial = twist.ratio + (twist.trial - twist.ratio) * share;
+        Twist { along: twist.along * share, trial, ..twist.clone() }
+    });
+    for k in 1.. {
+        let to = if k < parts { state.h + (h - state.h) * (f64::from(k) * share) } else { h };
+        let (next, response, sectors) = moved_once(table, &from, turn.as_ref(), to, d.map(|d| d * share), parts == PARTS)?;
+        if let Some(turn) = &mut turn {
+            (turn.sectors, turn.vertex) = sectors.unwrap_or((Sectors::default(), turn.vertex));
+        }
+        if k == parts {
+            return Some((next, response, turn.map(|turn| (turn.sectors, turn.vertex))));
+        }
+        from = next;
+    }
+    None
+}
+
+/// A step as it is; none where Newton's method does not find it, unless it is the `last` way.
+fn moved_once(table: &Table, state: &ContactState, twist: Option<&Twist>, h: f64, d: [f64; 2], last: bool) -> Option<Moved> {
     let (mut step, released) = begin(table, state, twist, h, d);
     let mut o = Guess::default();
     let elastic = step.elastic(&mut o);
@@ -101,18 +142,18 @@ pub(super) fn moved_with(
         }
         let tangent = std::array::from_fn(|j| o.slopes(j, [0.0; 3]));
         let sectors = elastic.and_then(|terms| Some((*terms.sectors?, twist?.vertex)));
-        return (step.keep(&o, h, 0.0, state.softened, released), step.answer(&o, 0.0, tangent), sectors);
+        return Some((step.keep(&o, h, 0.0, state.softened, released), step.answer(&o, 0.0, tangent), sectors));
     }
     let (r, factor) = step.begin_flow(&o, trial);
     let guess = step.first_guess(load * factor);
-    let (y, terms) = step.newton(guess, r, &mut o).unwrap_or_else(|| step.bracket(guess, trial, &mut o));
+    let (y, terms) = step.newton(guess, r, &mut o).or_else(|| last.then(|| step.bracket(guess, r, &mut o)))?;
     if let Some(terms) = &terms {
         step.slopes(terms, &mut o);
     }
     let tangent = std::array::from_fn(|j| o.slopes(j, o.solve(o.by[3 + j]).unwrap_or_default()));
     let [softened, released] = step.left_released(&o, y);
     let sectors = terms.and_then(|terms| Some((*terms.sectors?, o.twist_vertex)));
-    (step.keep(&o, h, y, softened, released), step.answer(&o, y, tangent), sectors)
+    Some((step.keep(&o, h, y, softened, released), step.answer(&o, y, tangent), sectors))
 }
 
 /// F_N and F_T over it that a state holds; none without contact.
@@ -309,10 +350,10 @@ impl Step<'_> {
 
     /// The hardening, where Newton does not find the way: r is solved for at each, and what F_N G
     /// has over the yield force falls from above zero at 0 to below it.
-    fn bracket(&self, guess: f64, trial: [f64; 2], o: &mut Guess) -> (f64, Option<Terms>) {
-        let (mut r, most) = (trial, self.most());
-        let mut excess = |y: f64, o: &mut Guess| {
-            let terms = self.at_ratio(y, &mut r, o);
+    fn bracket(&self, guess: f64, start: [f64; 2], o: &mut Guess) -> (f64, Option<Terms>) {
+        let most = self.most();
+        let excess = |y: f64, o: &mut Guess| {
+            let terms = self.at_ratio(y, start, o);
             (if terms.is_some() { o.residual[0] } else { -1.0 }, terms)
         };
         let (mut low, mut at_low) = (0.0, excess(0.0, o).0);
@@ -347,30 +388,87 @@ impl Step<'_> {
         (y, terms)
     }
 
-    /// The answer at a hardening, for the ratio that belongs to it: Newton's steps, halved where
-    /// they do not bring it nearer.
-    fn at_ratio(&self, y: f64, r: &mut [f64; 2], o: &mut Guess) -> Option<Terms> {
-        let bound = 0.5 * self.table.friction + 0.01;
-        let (mut from, mut by, mut least, mut back) = (*r, [0.0; 2], f64::INFINITY, 0);
-        for _ in 0..RATIOS {
-            let terms = self.evaluate(y, *r, true, o)?;
-            let [_, a, b] = o.residual;
-            let norm = a * a + b * b;
-            if norm < TOLERANCE * TOLERANCE {
+    /// The answer at a hardening, for the ratio that belongs to it, looked for from that of the
+    /// `start`: by Newton's steps where they bring it much nearer, else along what it lacks.
+    fn at_ratio(&self, y: f64, start: [f64; 2], o: &mut Guess) -> Option<Terms> {
+        let (mut r, short) = (start, self.table.friction * SHORT);
+        for tries in 0..RATIOS {
+            let terms = self.evaluate(y, r, true, o)?;
+            let [_, mut a, mut b] = o.residual;
+            let size = (a * a + b * b).sqrt();
+            if size < TOLERANCE {
                 return Some(terms);
             }
-            if norm > least && back < BACK {
-                (by, back) = (by.map(|by| 0.5 * by), back + 1);
-            } else {
+            if tries > 0 {
                 self.slopes_of_root(&terms, o);
-                let Some([_, x, y]) = o.solve_at(0.0) else { return Some(terms) };
-                let size = (x * x + y * y).sqrt();
-                let share = if size > bound { bound / size } else { 1.0 };
-                (from, by, least, back) = (*r, [share * x, share * y], norm, 0);
+                let [_, x0, x1] = o.solve_at(0.0).unwrap_or_default();
+                let to = [r[0] + x0, r[1] + x1];
+                if x0 * x0 + x1 * x1 < short * short && self.evaluate(y, to, true, o).is_some() {
+                    let [_, c, d] = o.residual;
+                    if c * c + d * d < 0.04 * size * size {
+                        r = to;
+                        continue;
+                    }
+                }
             }
-            *r = [from[0] + by[0], from[1] + by[1]];
+            (a, b) = (a / size, b / size);
+            let way = self.way(y, r, [a, b], size, o);
+            r = [r[0] + way * a, r[1] + way * b];
         }
-        self.evaluate(y, *r, true, o)
+        // Slowly from the start, where that comes to no end: there is an answer, as no ratio is
+        // beyond mu.
+        r = start;
+        for _ in 0..SLOWLY {
+            let terms = self.evaluate(y, r, true, o)?;
+            let [_, a, b] = o.residual;
+            if !(a * a + b * b > 1e-20) {
+                return Some(terms);
+            }
+            r = [r[0] + 0.05 * a, r[1] + 0.05 * b];
+        }
+        self.evaluate(y, r, true, o)
+    }
+
+    /// What the ratio lacks, along `e`, at a way `s` from `r`.
+    fn along(&self, y: f64, r: [f64; 2], e: [f64; 2], s: f64, o: &mut Guess) -> f64 {
+        let touches = self.evaluate(y, [r[0] + s * e[0], r[1] + s * e[1]], true, o).is_some();
+        if touches { o.residual[1] * e[0] + o.residual[2] * e[1] } else { -1.0 }
+    }
+
+    /// The way from `r` along `e` to the first ratio that lacks nothing; of `r` it lacks `size`.
+    /// Flow that fades at full slip may leave several, and a slower step would come to the first.
+    fn way(&self, y: f64, r: [f64; 2], e: [f64; 2], size: f64, o: &mut Guess) -> f64 {
+        let greatest = self.table.friction * SHORT;
+        let (mut low, mut high, mut at_low, mut at_high) = (0.0, 0.0, size, size);
+        for _ in 0..WAYS {
+            if !(at_high > 0.0) {
+                break;
+            }
+            (low, at_low) = (high, at_high);
+            high += (0.2 * at_high).min(greatest).max(0.05 * greatest);
+            at_high = self.along(y, r, e, high, o);
+        }
+        let (mut s, mut side) = (high, 0);
+        for k in 0..2 * HALVES {
+            if !(high - low > 1e-14) {
+                break;
+            }
+            s = if k < HALVES { high - at_high * (high - low) / (at_high - at_low) } else { 0.5 * (low + high) };
+            let here = self.along(y, r, e, s, o);
+            if here.abs() < 0.1 * TOLERANCE || here.abs() < 1e-3 * size {
+                break;
+            }
+            if here > 0.0 {
+                (low, at_low) = (s, here);
+                at_high *= if side == 1 { 0.5 } else { 1.0 };
+                side = 1;
+            } else {
+                (high, at_high) = (s, here);
+                at_low *= if side == -1 { 0.5 } else { 1.0 };
+                side = -1;
+            }
+        }
+        s
     }
 
     /// What releases took of the yield force before the one that a step has left over, and the

@@ -191,7 +191,8 @@ typedef struct asperity_tangent {
 #define ASPERITY_TWIST_MOST @TWIST_MOST@       /* up to here */
 #define ASPERITY_TWIST_YIELD @TWIST_YIELD@     /* what M_twist over that lever counts for yield, beside F_T */
 #define ASPERITY_STEPS 20                      /* of Newton */
-#define ASPERITY_BRACKETS 100                  /* where that does not find the way */
+#define ASPERITY_PARTS 8                      /* of a step where that does not find the way, */
+#define ASPERITY_BRACKETS 100                  /* and of a bracket where no parts do */
 #define ASPERITY_TOLERANCE 1e-12               /* of F_N over the yield force and of F_T/F_N */
 
 /* Whether a number is finite, also where the compiler was told that all are. */
@@ -457,87 +458,7 @@ ASPERITY_FN int asperity_enter(
     return 1;
 }
 
-/* Forces and energies of a step over E R^2 and E R^3, and those before it. */
-typedef struct asperity_account {
-    double old_f_n, old_f_t[2], old_stored, f_n, f_t[2], stored, stiffness, friction;
-    int plastic;
-} asperity_account;
-
-/* The answer in the user's units. Returns 0 where it is no number.
- * What was done (by the mean of the forces before and after) and is not stored: the sliders' share is friction's, all of it in an elastic step; the rest plastic flow's. */
-ASPERITY_FN int asperity_answer(asperity_real radius, asperity_real modulus, const asperity_entry *by, double h, const asperity_account *a, asperity_response *out) {
-    double force = (double)modulus * (double)radius * (double)radius, work = force * (double)radius, stiff = (double)modulus * (double)radius, total, slip;
-    if (!asperity_is_finite(ASPERITY_R(a->stored)) || !asperity_is_finite(ASPERITY_R(a->f_n + a->f_t[0] + a->f_t[1]))) {
-        return 0;
-    }
-    total = 0.5 * ((a->old_f_n + a->f_n) * (by->h - h) + (a->old_f_t[0] + a->f_t[0]) * by->d[0] + (a->old_f_t[1] + a->f_t[1]) * by->d[1]);
-    total -= a->stored - a->old_stored;
-    if (!(a->f_n > 0.0) && total < 0.0) {
-        total = 0.0; /* contact was lost within the step */
-    }
-    slip = !a->plastic || total < 0.0 || a->friction > total ? total : a->friction > 0.0 ? a->friction : 0.0;
-    out->f_n = ASPERITY_R(a->f_n * force);
-    out->f_t[0] = ASPERITY_R(a->f_t[0] * force);
-    out->f_t[1] = ASPERITY_R(a->f_t[1] * force);
-    out->stiffness = ASPERITY_R(a->stiffness * stiff);
-    out->stored = ASPERITY_R(a->stored * work);
-    out->friction = ASPERITY_R(slip * work);
-    out->plastic = ASPERITY_R((total - slip) * work);
-    return 1;
-}
-
-/* The update with a twist, or none; its forces around the normal are left there. */
-ASPERITY_FN void asperity_advance(
-    const asperity_table *t, asperity_real radius, asperity_real modulus, const asperity_state *state, asperity_twist *twist, asperity_real h,
-    const asperity_real increment[2], asperity_state *next, asperity_response *out, asperity_tangent *tangent) {
-    const double stiff = (double)modulus * (double)radius;
-    asperity_work s, after;
-    asperity_step first;
-    asperity_guess o;
-    asperity_entry by;
-    asperity_account a;
-    if (!asperity_enter(radius, state, 0, h, increment, next, out, tangent, &by)) {
-        if (twist) {
-            memset(twist->sector, 0, sizeof twist->sector);
-        }
-        return;
-    }
-    asperity_begin(state, &s);
-    asperity_move(t, &s, twist, by.h, by.d, tangent ? ASPERITY_SLOPES : ASPERITY_FORCES, &first, &after, &o);
-    a.old_f_n = first.old_f_n;
-    a.old_f_t[0] = first.old_f_t[0];
-    a.old_f_t[1] = first.old_f_t[1];
-    a.old_stored = first.old_stored[0] + first.old_stored[1];
-    a.f_n = o.f_n;
-    a.f_t[0] = o.f_t[0];
-    a.f_t[1] = o.f_t[1];
-    a.stored = o.stored;
-    a.stiffness = o.stiffness;
-    a.friction = o.friction;
-    a.plastic = o.plastic;
-    if (!asperity_answer(radius, modulus, &by, s.h, &a, out)) {
-        asperity_refuse(out, tangent);
-        *next = *state;
-        return;
-    }
-    if (tangent) {
-        tangent->df_n_dh = ASPERITY_R(o.tangent[0][0] * stiff);
-        tangent->df_t_dh[0] = ASPERITY_R(o.tangent[0][1] * stiff);
-        tangent->df_t_dh[1] = ASPERITY_R(o.tangent[0][2] * stiff);
-        tangent->df_n_ddelta[0] = ASPERITY_R(o.tangent[1][0] * stiff);
-        tangent->df_n_ddelta[1] = ASPERITY_R(o.tangent[2][0] * stiff);
-        tangent->df_t_ddelta[0][0] = ASPERITY_R(o.tangent[1][1] * stiff);
-        tangent->df_t_ddelta[0][1] = ASPERITY_R(o.tangent[2][1] * stiff);
-        tangent->df_t_ddelta[1][0] = ASPERITY_R(o.tangent[1][2] * stiff);
-        tangent->df_t_ddelta[1][1] = ASPERITY_R(o.tangent[2][2] * stiff);
-        tangent->a = ASPERITY_R(asperity_radius(t, &after) * (double)radius);
-    }
-    asperity_end(&after, next);
-    if (twist) {
-        memcpy(twist->sector, o.sector, sizeof o.sector);
-        twist->vertex = o.plastic && o.f_n > 0.0 ? o.twist_vertex : twist->vertex;
-    }
-}
+#include "asperity_advance.h"
 
 /* Moves a contact to the indentation h and along the plane by `increment`. `next` may be `state`; `tangent` may be NULL. Where h or the increment is not finite,
  * or the state is not sound, nothing in the answer is a number and the state stays as it was. */

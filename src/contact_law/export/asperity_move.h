@@ -301,44 +301,94 @@ ASPERITY_FN void asperity_elastic_slopes(const asperity_step *p, asperity_guess 
     }
 }
 
-/* What F_N G has over the yield force at a hardening, for the ratio that belongs to it: Newton's steps, halved where they do not bring it nearer. */
-ASPERITY_FN double asperity_excess(const asperity_step *p, double y, double r[2], asperity_guess *ASPERITY_ALONE o) {
-    double bound = 0.5 * p->friction + 0.01, from[2] = {r[0], r[1]}, by[2] = {0.0, 0.0}, x[3] = {0.0, 0.0, 0.0}, least = 1e300, size;
-    int k, back = 0;
-    for (k = 0; k < 100; k++) {
-        double norm;
+/* What the ratio lacks, along e, at a way s from r. */
+ASPERITY_FN double asperity_along(const asperity_step *p, double y, const double r[2], const double e[2], double s, asperity_guess *ASPERITY_ALONE o) {
+    double at[2];
+    at[0] = r[0] + s * e[0];
+    at[1] = r[1] + s * e[1];
+    return asperity_evaluate(p, y, at, o) ? o->residual[1] * e[0] + o->residual[2] * e[1] : -1.0;
+}
+
+/* The way from r along e to the first ratio that lacks nothing; of r it lacks `size`. Flow that fades at full slip may leave several, and a slower step would come to the first. */
+ASPERITY_FN double asperity_way(const asperity_step *p, double y, const double r[2], const double e[2], double size, asperity_guess *ASPERITY_ALONE o) {
+    double greatest = p->friction / 15.0, low = 0.0, high = 0.0, at_low = size, at_high = size, s;
+    int side = 0, k;
+    for (k = 0; k < 400 && at_high > 0.0; k++) {
+        double step = 0.2 * at_high < greatest ? 0.2 * at_high : greatest;
+        low = high;
+        at_low = at_high;
+        high += step > 0.05 * greatest ? step : 0.05 * greatest;
+        at_high = asperity_along(p, y, r, e, high, o);
+    }
+    s = high;
+    for (k = 0; k < 40 && high - low > 1e-14; k++) {
+        double here;
+        s = k < 20 ? high - at_high * (high - low) / (at_high - at_low) : 0.5 * (low + high);
+        here = asperity_along(p, y, r, e, s, o);
+        if (fabs(here) < 0.1 * ASPERITY_TOLERANCE || fabs(here) < 1e-3 * size) {
+            break;
+        }
+        if (here > 0.0) {
+            low = s;
+            at_low = here;
+            at_high *= side == 1 ? 0.5 : 1.0;
+            side = 1;
+        } else {
+            high = s;
+            at_high = here;
+            at_low *= side == -1 ? 0.5 : 1.0;
+            side = -1;
+        }
+    }
+    return s;
+}
+
+/* What F_N G has over the yield force at a hardening, for the ratio that belongs to it, looked for from that of the start: by Newton's steps where they bring it much nearer, else along
+ * what it lacks. */
+ASPERITY_FN double asperity_excess(const asperity_step *p, double y, const double start[2], asperity_guess *ASPERITY_ALONE o) {
+    double r[2] = {start[0], start[1]}, short_of = p->friction / 15.0, lacks[2], x[3], to[2], size, s;
+    int k;
+    for (k = 0; k < 50; k++) {
         if (!asperity_evaluate(p, y, r, o)) {
             return -1.0;
         }
-        norm = o->residual[1] * o->residual[1] + o->residual[2] * o->residual[2];
-        if (norm < ASPERITY_TOLERANCE * ASPERITY_TOLERANCE) {
+        lacks[0] = o->residual[1];
+        lacks[1] = o->residual[2];
+        size = sqrt(lacks[0] * lacks[0] + lacks[1] * lacks[1]);
+        if (size < ASPERITY_TOLERANCE) {
             return o->residual[0];
         }
-        if (norm > least && back < 12) {
-            back++;
-            by[0] *= 0.5;
-            by[1] *= 0.5;
-        } else {
+        if (k > 0) {
             asperity_guess_slopes(p, 3, 1, o);
             x[1] = x[2] = 0.0;
             asperity_solve_at(o, 1, 0.0, x);
-            size = sqrt(x[1] * x[1] + x[2] * x[2]);
-            size = size > bound ? bound / size : 1.0;
-            from[0] = r[0];
-            from[1] = r[1];
-            by[0] = size * x[1];
-            by[1] = size * x[2];
-            least = norm;
-            back = 0;
+            to[0] = r[0] + x[1];
+            to[1] = r[1] + x[2];
+            if (x[1] * x[1] + x[2] * x[2] < short_of * short_of && asperity_evaluate(p, y, to, o) &&
+                o->residual[1] * o->residual[1] + o->residual[2] * o->residual[2] < 0.04 * size * size) {
+                r[0] = to[0];
+                r[1] = to[1];
+                continue;
+            }
         }
-        r[0] = from[0] + by[0];
-        r[1] = from[1] + by[1];
+        lacks[0] /= size;
+        lacks[1] /= size;
+        s = asperity_way(p, y, r, lacks, size, o);
+        r[0] += s * lacks[0];
+        r[1] += s * lacks[1];
+    }
+    /* Slowly from the start, where that comes to no end: there is an answer, as no ratio is beyond mu. */
+    r[0] = start[0];
+    r[1] = start[1];
+    for (k = 0; k < 600 && asperity_evaluate(p, y, r, o) && o->residual[1] * o->residual[1] + o->residual[2] * o->residual[2] > 1e-20; k++) {
+        r[0] += 0.05 * o->residual[1];
+        r[1] += 0.05 * o->residual[2];
     }
     return asperity_evaluate(p, y, r, o) ? o->residual[0] : -1.0;
 }
 
 /* The hardening, where Newton does not find the way: r is solved for at each, and what F_N G has over the yield force falls from above zero at 0 to below it. */
-ASPERITY_FN double asperity_bracket(const asperity_step *p, double guess, double r[2], asperity_guess *ASPERITY_ALONE o) {
+ASPERITY_FN double asperity_bracket(const asperity_step *p, double guess, const double r[2], asperity_guess *ASPERITY_ALONE o) {
     double most = asperity_most(p), low = 0.0, at_low = asperity_excess(p, 0.0, r, o), high = guess > 1e-3 * most ? guess : 1e-3 * most, at_high = asperity_excess(p, high, r, o), y;
     int side = 0, k;
     while (at_high > 0.0 && high < most) {
@@ -396,8 +446,7 @@ ASPERITY_FN void asperity_solution_slopes(const asperity_step *p, asperity_guess
 }
 #endif
 
-/* One step. What was stored and done before is left in p. Returns of which contacts the answer was found; of one it always is, and of several none that yields where `what` is
- * ASPERITY_ELASTIC. */
+/* One step. What was stored and done before is left in p. Returns of which contacts the answer was found; of none that yields where `what` is ASPERITY_ELASTIC. */
 ASPERITY_FN asperity_m asperity_move(
     const asperity_table *t, const asperity_work *s, const asperity_twist *twist, asperity_v h, const asperity_v d[2], int what, asperity_step *p, asperity_work *next,
     asperity_guess *ASPERITY_ALONE o) {
@@ -451,17 +500,19 @@ ASPERITY_FN asperity_m asperity_move(
     elastic[4] = o->stiffness;
     p->radial = asperity_column(t, &p->row, ASPERITY_RADIAL_SLIP);
     p->sudden = asperity_column(t, &p->row, ASPERITY_SUDDEN);
-    start[0] = r[0];
-    start[1] = r[1];
-    (void)start;
     factor = asperity_grow_from(p, softening, o->factor, o->cell, r);
     p->rho_log = asperity_choose(p->rho < 1.0 - 1e-12, -1.0 / asperity_logarithm(p->rho), none);
     p->sum = asperity_limits(p->lost, asperity_all(1.0), p->limit);
     y = guess = asperity_first_guess(p, load * factor);
+    start[0] = r[0];
+    start[1] = r[1];
     found = asperity_newton(p, flows, &y, r, o);
-#if !ASPERITY_SEVERAL
-    if (!found) {
+#if ASPERITY_SEVERAL
+    (void)start;
+#else
+    if (!found && p->last) {
         y = asperity_bracket(p, guess, start, o);
+        found = 1;
     }
     if (what == ASPERITY_SLOPES) {
         asperity_wear_slopes(p, o);

@@ -107,7 +107,7 @@ ASPERITY_FN void asperity_advance_wide(const asperity_table *t, asperity_real mo
     asperity_load(before, &s);
     sound = asperity_are_sound(&s);
     found = sound & asperity_wide_move(t, &s, NULL, h, d, what, &first, &after, &o);
-    /* As asperity_answer(). */
+    /* As asperity_book() and asperity_answer(). */
     found &= asperity_wide_are_finite(o.stored) & asperity_wide_are_finite(o.f_n + o.f_t[0] + o.f_t[1]);
     total = 0.5 * ((first.old_f_n + o.f_n) * (h - s.h) + (first.old_f_t[0] + o.f_t[0]) * d[0] + (first.old_f_t[1] + o.f_t[1]) * d[1]);
     total -= o.stored - (first.old_stored[0] + first.old_stored[1]);

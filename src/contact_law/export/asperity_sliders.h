@@ -41,6 +41,7 @@ typedef struct asperity_step {
     const asperity_table *t;
     const asperity_work *s;
     const asperity_twist *twist; /* or none */
+    int last;                    /* whether it is not to be cut into parts, or more of them */
     asperity_row row; /* at its start */
     double friction, per_friction;
     asperity_v h, d[2], depth, per_depth, log_h, dent, approach; /* depth: h_m at its start, log_h of it over the first row's; approach: D there */

@@ -16,7 +16,7 @@ use super::turning_constants::{LEVERS, LEVERS_SQUARED, TWIST_FOLLOWS, TWIST_LEVE
 const HEADER: &str = include_str!("asperity_contact.h");
 /// What it and others are made of: the update's files are in it twice, for one contact and for
 /// several.
-const PARTS: [(&str, &str); 11] = [
+const PARTS: [(&str, &str); 12] = [
     ("asperity_series.h", include_str!("asperity_series.h")),
     ("asperity_numbers.h", include_str!("asperity_numbers.h")),
     ("asperity_sliders.h", include_str!("asperity_sliders.h")),
@@ -25,6 +25,7 @@ const PARTS: [(&str, &str); 11] = [
     ("asperity_wide.h", include_str!("asperity_wide.h")),
     ("asperity_wide_names.h", include_str!("asperity_wide_names.h")),
     ("asperity_wide_end.h", include_str!("asperity_wide_end.h")),
+    ("asperity_advance.h", include_str!("asperity_advance.h")),
     ("asperity_several.h", include_str!("asperity_several.h")),
     ("asperity_file.h", include_str!("asperity_file.h")),
     ("asperity_many.h", include_str!("asperity_many.h")),

@@ -1,0 +1,115 @@
+/* From a step over R to its answer. No guard: included once. */
+
+/* Forces and energies of a step over E R^2 and E R^3: what was dissipated, and of it by slip. */
+typedef struct asperity_account {
+    double f_n, f_t[2], stored, stiffness, total, slip;
+} asperity_account;
+
+/* The answer in the user's units. Returns 0 where it is no number. */
+ASPERITY_FN int asperity_answer(asperity_real radius, asperity_real modulus, const asperity_account *a, asperity_response *out) {
+    double force = (double)modulus * (double)radius * (double)radius, work = force * (double)radius, stiff = (double)modulus * (double)radius;
+    if (!asperity_is_finite(ASPERITY_R(a->stored)) || !asperity_is_finite(ASPERITY_R(a->f_n + a->f_t[0] + a->f_t[1]))) {
+        return 0;
+    }
+    out->f_n = ASPERITY_R(a->f_n * force);
+    out->f_t[0] = ASPERITY_R(a->f_t[0] * force);
+    out->f_t[1] = ASPERITY_R(a->f_t[1] * force);
+    out->stiffness = ASPERITY_R(a->stiffness * stiff);
+    out->stored = ASPERITY_R(a->stored * work);
+    out->friction = ASPERITY_R(a->slip * work);
+    out->plastic = ASPERITY_R((a->total - a->slip) * work);
+    return 1;
+}
+
+/* One step into the account. What was done (by the mean of the forces before and after) and is not stored: the sliders' share is friction's, all of it in an elastic step; the rest
+ * plastic flow's. */
+ASPERITY_FN void asperity_book(const asperity_step *p, const asperity_guess *o, asperity_account *a) {
+    double total = 0.5 * ((p->old_f_n + o->f_n) * (p->h - p->s->h) + (p->old_f_t[0] + o->f_t[0]) * p->d[0] + (p->old_f_t[1] + o->f_t[1]) * p->d[1]);
+    total -= o->stored - (p->old_stored[0] + p->old_stored[1]);
+    if (!(o->f_n > 0.0) && total < 0.0) {
+        total = 0.0; /* contact was lost within the step */
+    }
+    a->total += total;
+    a->slip += !o->plastic || total < 0.0 || o->friction > total ? total : o->friction > 0.0 ? o->friction : 0.0;
+    a->f_n = o->f_n;
+    a->f_t[0] = o->f_t[0];
+    a->f_t[1] = o->f_t[1];
+    a->stored = o->stored;
+    a->stiffness = o->stiffness;
+}
+
+/* A step in so many parts. Returns whether the answers of all were found; of ASPERITY_PARTS, by a bracket where nothing else does, they always are. */
+ASPERITY_FN int asperity_move_in(
+    const asperity_table *t, int parts, const asperity_work *s, asperity_twist *twist, const asperity_entry *by, int what, asperity_account *a, asperity_work *after,
+    asperity_guess *ASPERITY_ALONE o) {
+    const double share = 1.0 / parts, d[2] = {by->d[0] * share, by->d[1] * share};
+    asperity_work from = *s;
+    asperity_twist turn;
+    asperity_step p;
+    int k;
+    p.last = parts == ASPERITY_PARTS;
+    a->total = a->slip = 0.0;
+    if (twist) {
+        turn = *twist;
+        turn.along *= share;
+        turn.trial = turn.ratio + (turn.trial - turn.ratio) * share;
+    }
+    for (k = 1; k <= parts; k++) {
+        double h = k < parts ? s->h + (by->h - s->h) * (k * share) : by->h;
+        if (!asperity_move(t, &from, twist ? &turn : NULL, h, d, k < parts ? ASPERITY_FORCES : what, &p, after, o)) {
+            return 0;
+        }
+        asperity_book(&p, o, a);
+        if (twist) {
+            memcpy(turn.sector, o->sector, sizeof turn.sector);
+            turn.vertex = o->plastic && o->f_n > 0.0 ? o->twist_vertex : turn.vertex;
+        }
+        from = *after;
+    }
+    if (twist) {
+        memcpy(twist->sector, turn.sector, sizeof turn.sector);
+        twist->vertex = turn.vertex;
+    }
+    return 1;
+}
+
+/* The update with a twist, or none; its forces around the normal are left there. A step that is so long that Newton's method does not find its answer is taken in parts: flow that fades
+ * at full slip may leave it several, and a slower one comes to the right one. The tangent is that of the last part. */
+ASPERITY_FN void asperity_advance(
+    const asperity_table *t, asperity_real radius, asperity_real modulus, const asperity_state *state, asperity_twist *twist, asperity_real h,
+    const asperity_real increment[2], asperity_state *next, asperity_response *out, asperity_tangent *tangent) {
+    const double stiff = (double)modulus * (double)radius;
+    asperity_work s, after;
+    asperity_guess o;
+    asperity_entry by;
+    asperity_account a;
+    int parts = 1;
+    if (!asperity_enter(radius, state, 0, h, increment, next, out, tangent, &by)) {
+        if (twist) {
+            memset(twist->sector, 0, sizeof twist->sector);
+        }
+        return;
+    }
+    asperity_begin(state, &s);
+    while (!asperity_move_in(t, parts, &s, twist, &by, tangent ? ASPERITY_SLOPES : ASPERITY_FORCES, &a, &after, &o)) {
+        parts *= 2;
+    }
+    if (!asperity_answer(radius, modulus, &a, out)) {
+        asperity_refuse(out, tangent);
+        *next = *state;
+        return;
+    }
+    if (tangent) {
+        tangent->df_n_dh = ASPERITY_R(o.tangent[0][0] * stiff);
+        tangent->df_t_dh[0] = ASPERITY_R(o.tangent[0][1] * stiff);
+        tangent->df_t_dh[1] = ASPERITY_R(o.tangent[0][2] * stiff);
+        tangent->df_n_ddelta[0] = ASPERITY_R(o.tangent[1][0] * stiff);
+        tangent->df_n_ddelta[1] = ASPERITY_R(o.tangent[2][0] * stiff);
+        tangent->df_t_ddelta[0][0] = ASPERITY_R(o.tangent[1][1] * stiff);
+        tangent->df_t_ddelta[0][1] = ASPERITY_R(o.tangent[2][1] * stiff);
+        tangent->df_t_ddelta[1][0] = ASPERITY_R(o.tangent[1][2] * stiff);
+        tangent->df_t_ddelta[1][1] = ASPERITY_R(o.tangent[2][2] * stiff);
+        tangent->a = ASPERITY_R(asperity_radius(t, &after) * (double)radius);
+    }
+    asperity_end(&after, next);
+}
