@@ -226,8 +226,8 @@ fn program_succeeds(program: &str, compiler: &[&str], test: &str) {
     println!("{}", text(&run));
 }
 
-/// Tangents, step size, energy, turned axes and steps of all sizes, on tables of a soft and a
-/// strong contact.
+/// Tangents, step size, energy, turned axes, steps of all sizes, and how many are left unsolved, on
+/// tables of a soft and a strong contact.
 #[test]
 fn the_update_keeps_what_it_promises() {
     let test = "the_update_keeps_what_it_promises";
@@ -241,10 +241,12 @@ fn the_update_keeps_what_it_promises() {
         for file in law_files(&law, Language::C, None).unwrap() {
             fs::write(dir.path().join(file.name), file.content).unwrap();
         }
-        fs::copy(root.join("tests/law/element_check.c"), dir.path().join("element_check.c")).unwrap();
-        let run = compile_and_run(dir.path(), "element_check.c", &["gcc", "-std=c99", "-O2"], &["law.asperity"]);
-        assert!(run.status.success(), "{name}\n{}", text(&run));
-        println!("{name}\n{}", text(&run));
+        for program in ["element_check.c", "unsolved.c"] {
+            fs::copy(root.join("tests/law").join(program), dir.path().join(program)).unwrap();
+            let run = compile_and_run(dir.path(), program, &["gcc", "-std=c99", "-O2"], &["law.asperity"]);
+            assert!(run.status.success(), "{name}\n{}", text(&run));
+            println!("{name}\n{}", text(&run));
+        }
     }
 }
 

@@ -376,7 +376,6 @@ class PairAsperity : public Pair {
     asperity_contact after, before = {};
     asperity_turning turned = {};
     asperity_cohesion joined = {};
-    asperity_forces out;
     if (slot >= 0) before = memories.contact[slot];
     if (slot >= 0 && turning) turned = memories.turning[slot];
     if (slot >= 0 && memories.holds) joined = memories.cohesion[slot];
@@ -385,7 +384,9 @@ class PairAsperity : public Pair {
     asperity_cohesion *cohesion_too = law.coheres() ? &joined : nullptr;
     fill(a, atom, masses, first ? i : j);
     fill(b, atom, masses, first ? j : i);
-    asperity_spheres_cohesive(&law.law, &a, &b, 0.0, &before, &after, turning_too, turning_too, cohesion_too, cohesion_too, &out);
+    asperity_pair pair = {&a, &b, &before, &after, turning_too, cohesion_too, {}};
+    asperity_spheres_many(&law.law, 0.0, 1, &pair);    // as in compute(), to the bit
+    const asperity_forces &out = pair.out;
     if (out.flags & ASPERITY_NO_NUMBER) no_answer(i, j);
     svector[0] = out.f_n;
     svector[1] = out.f_t;

@@ -27,7 +27,8 @@
 //! `turning`. [`ContactParameters::cohere`] adds the attraction of the surfaces: `cohesion`.
 //!
 //! A step solves F_N G = rho P and F_T = r F_N for the hardening and r by Newton's method with
-//! exact slopes; where that does not find the root it is bracketed in the hardening.
+//! exact slopes; a step for which that does not find the root is taken in parts, up to 64, and of
+//! these the hardening is bracketed where nothing else does.
 //! `benches/law/element.md` has all equations, what fails, and by which term.
 
 pub mod export;

@@ -14,7 +14,7 @@ use super::turning_constants::TurningConstants;
 /// Steps of Newton.
 const STEPS: usize = 20;
 /// Parts of a step, at the most, where Newton does not find the way.
-const PARTS: u32 = 8;
+const PARTS: u32 = 64;
 /// Steps of a bracket where no parts do.
 const BRACKETS: usize = 100;
 /// Steps for the ratio at a hardening, greatest one over mu; on the way to it, and of its bracket,

@@ -2,7 +2,7 @@
 
 /* Forces and energies of a step over E R^2 and E R^3: what was dissipated, and of it by slip. */
 typedef struct asperity_account {
-    double f_n, f_t[2], stored, stiffness, total, slip;
+    double f_n, f_t[2], stored, stiffness, total, slip, unsolved;
 } asperity_account;
 
 /* The answer in the user's units. Returns 0 where it is no number. */
@@ -18,6 +18,7 @@ ASPERITY_FN int asperity_answer(asperity_real radius, asperity_real modulus, con
     out->stored = ASPERITY_R(a->stored * work);
     out->friction = ASPERITY_R(a->slip * work);
     out->plastic = ASPERITY_R((a->total - a->slip) * work);
+    out->unsolved = ASPERITY_R(a->unsolved);
     return 1;
 }
 
@@ -36,6 +37,7 @@ ASPERITY_FN void asperity_book(const asperity_step *p, const asperity_guess *o, 
     a->f_t[1] = o->f_t[1];
     a->stored = o->stored;
     a->stiffness = o->stiffness;
+    a->unsolved = o->unsolved > a->unsolved ? o->unsolved : a->unsolved;
 }
 
 /* A step in so many parts. Returns whether the answers of all were found; of ASPERITY_PARTS, by a bracket where nothing else does, they always are. */
@@ -48,7 +50,7 @@ ASPERITY_FN int asperity_move_in(
     asperity_step p;
     int k;
     p.last = parts == ASPERITY_PARTS;
-    a->total = a->slip = 0.0;
+    a->total = a->slip = a->unsolved = 0.0;
     if (twist) {
         turn = *twist;
         turn.along *= share;

@@ -165,6 +165,7 @@ typedef struct asperity_response {
     asperity_real stored;       /* elastic energy */
     asperity_real plastic;      /* work that this increment dissipated in plastic flow, */
     asperity_real friction;     /* and in slip */
+    asperity_real unsolved;     /* 0; or what is left of the equations, over F_N, of a step at which nothing finds their answer */
 } asperity_response;
 
 /* Derivatives, for implicit engines, and the contact radius. */
@@ -191,7 +192,7 @@ typedef struct asperity_tangent {
 #define ASPERITY_TWIST_MOST @TWIST_MOST@       /* up to here */
 #define ASPERITY_TWIST_YIELD @TWIST_YIELD@     /* what M_twist over that lever counts for yield, beside F_T */
 #define ASPERITY_STEPS 20                      /* of Newton */
-#define ASPERITY_PARTS 8                      /* of a step where that does not find the way, */
+#define ASPERITY_PARTS 64                      /* of a step where that does not find the way, */
 #define ASPERITY_BRACKETS 100                  /* and of a bracket where no parts do */
 #define ASPERITY_TOLERANCE 1e-12               /* of F_N over the yield force and of F_T/F_N */
 
@@ -394,7 +395,7 @@ ASPERITY_FN void asperity_rotate(asperity_state *state, asperity_real cosine, as
 /* Nothing in the answer is a number. */
 ASPERITY_FN void asperity_refuse(asperity_response *out, asperity_tangent *tangent) {
     asperity_real bad = asperity_no_number();
-    out->f_n = out->f_t[0] = out->f_t[1] = out->stiffness = out->stored = out->plastic = out->friction = bad;
+    out->f_n = out->f_t[0] = out->f_t[1] = out->stiffness = out->stored = out->plastic = out->friction = out->unsolved = bad;
     if (tangent) {
         tangent->df_t_ddelta[0][0] = tangent->df_t_ddelta[0][1] = tangent->df_t_ddelta[1][0] = tangent->df_t_ddelta[1][1] = bad;
         tangent->df_n_dh = tangent->df_n_ddelta[0] = tangent->df_n_ddelta[1] = tangent->df_t_dh[0] = tangent->df_t_dh[1] = tangent->a = bad;

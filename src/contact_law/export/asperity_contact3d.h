@@ -33,7 +33,8 @@ enum {
     ASPERITY_OUT_OF_RANGE = 2, /* has been deeper than the law was made for */
     ASPERITY_WRONG_TABLE = 4,  /* a wall's table between spheres, or a pair's at a wall: no forces */
     ASPERITY_NO_NUMBER = 8,    /* the centres coincide, or something is no number: no forces */
-    ASPERITY_HOLDS = 16        /* the surfaces hold each other by cohesion */
+    ASPERITY_HOLDS = 16,       /* the surfaces hold each other by cohesion */
+    ASPERITY_UNSOLVED = 32     /* a step so long that nothing found the answer of its equations; the forces are near it */
 };
 
 /* What asperity_pair_law() and asperity_wall_law() return. */
@@ -193,7 +194,7 @@ typedef struct asperity_meetings {
     asperity_lanes e1[3], e2[3], axis[2], along[2];        /* frame, and v in it */
     asperity_lanes h, d[2], turn[3];                       /* increment of the update */
     asperity_lanes f_n, f_t[2], stiffness, stored, plastic, friction; /* its answer; later all that acts */
-    asperity_lanes pressed, damped, force[3], lever[3], size; /* pressed: f_n of the update */
+    asperity_lanes unsolved, pressed, damped, force[3], lever[3], size; /* pressed: f_n of the update */
     asperity_moments moments[ASPERITY_TOGETHER];
     asperity_attraction pull[ASPERITY_TOGETHER];
     asperity_cohesion joined[ASPERITY_TOGETHER];
@@ -327,6 +328,7 @@ ASPERITY_INLINE void asperity_take(const asperity_response *answer, int l, asper
     m->stored[l] = answer->stored;
     m->plastic[l] = answer->plastic;
     m->friction[l] = answer->friction;
+    m->unsolved[l] = answer->unsolved;
 }
 
 /* The update of one lane. `turning` is NULL where twist and roll are left out, `cohesion` where that is. */
@@ -428,7 +430,7 @@ ASPERITY_FN void asperity_settle(
     out->stored = m->stored[l];
     out->damped = m->damped[l];
     out->parted = ASPERITY_R(0.0);
-    out->flags = (m->pressed[l] > ASPERITY_R(0.0) ? ASPERITY_TOUCHES : 0) | (asperity_out_of_range(law->table, &m->state[l]) ? ASPERITY_OUT_OF_RANGE : 0);
+    out->flags = (m->pressed[l] > ASPERITY_R(0.0) ? ASPERITY_TOUCHES : 0) | (m->unsolved[l] > ASPERITY_R(0.0) ? ASPERITY_UNSOLVED : 0) | (asperity_out_of_range(law->table, &m->state[l]) ? ASPERITY_OUT_OF_RANGE : 0);
     for (k = 0; turning && k < 3; k++) {
         asperity_real moment = m->moments[l].m_roll[0] * m->e1[k][l] + m->moments[l].m_roll[1] * m->e2[k][l] + m->moments[l].m_twist * m->n[k][l];
         out->torque_i[k] -= moment;

@@ -459,7 +459,7 @@ ASPERITY_FN asperity_m asperity_move(
     gamma = p->row.value[ASPERITY_GAMMA];
     softening = asperity_column(t, &p->row, ASPERITY_SOFTENING);
     released = asperity_release(p, softening, o);
-    o->friction = o->factor = none;
+    o->friction = o->factor = o->unsolved = none;
     touches = asperity_elastic(p, o);
     r[0] = asperity_choose(touches, o->f_t[0] / o->f_n, none);
     r[1] = asperity_choose(touches, o->f_t[1] / o->f_n, none);
@@ -512,6 +512,8 @@ ASPERITY_FN asperity_m asperity_move(
 #else
     if (!found && p->last) {
         y = asperity_bracket(p, guess, start, o);
+        load = sqrt(o->residual[0] * o->residual[0] + o->residual[1] * o->residual[1] + o->residual[2] * o->residual[2]);
+        o->unsolved = load > 1e-7 ? load : 0.0;
         found = 1;
     }
     if (what == ASPERITY_SLOPES) {

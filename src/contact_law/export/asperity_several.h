@@ -136,6 +136,7 @@ ASPERITY_FN void asperity_advance_wide(const asperity_table *t, asperity_real mo
             one->out.stored = ASPERITY_R(o.stored[k]);
             one->out.plastic = ASPERITY_R(plastic[k]);
             one->out.friction = ASPERITY_R(slip[k]);
+            one->out.unsolved = ASPERITY_R(0.0);
         } else if (what == ASPERITY_ELASTIC && sound[k]) {
             yields->one[yields->count] = one;
             yields->by[yields->count++] = by[k];

@@ -59,7 +59,7 @@ typedef struct asperity_step {
 typedef struct asperity_guess {
     asperity_row row;
     asperity_cell cell[ASPERITY_SHAPES];
-    asperity_v r[2], f_n, f_t[2], factor, rho, width, reach, hardens, vertex[2], residual[3], slip[2], friction, stored, stiffness;
+    asperity_v r[2], f_n, f_t[2], factor, rho, width, reach, hardens, vertex[2], residual[3], slip[2], friction, stored, stiffness, unsolved;
     asperity_m plastic;
     asperity_v e, level, log_width, scale, move[3];
     asperity_v slider[3][ASPERITY_CELLS];

@@ -66,12 +66,13 @@ class State(ctypes.Structure):
 
 
 class Response(ctypes.Structure):
-    """The answer of an increment: forces, the stiffness of an unloading, elastic energy, work dissipated by plastic flow and by slip."""
+    """The answer of an increment: forces, the stiffness of an unloading, elastic energy, work dissipated by plastic flow and by slip, and what the step
+    lacks where nothing solves it, over F_N."""
 
     _fields_ = [
         ("f_n", ctypes.c_double),
         ("f_t", ctypes.c_double * 2),
-        *((name, ctypes.c_double) for name in ("stiffness", "stored", "plastic", "friction")),
+        *((name, ctypes.c_double) for name in ("stiffness", "stored", "plastic", "friction", "unsolved")),
     ]
 
 
