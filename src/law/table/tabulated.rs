@@ -116,14 +116,6 @@ impl Tabulated {
         self.case().map_err(|problem| LawError::BadLaw { path: "law.json".into(), problem })
     }
 
-    /// The material, in units of its E.
-    ///
-    /// # Errors
-    /// [`LawError::BadLaw`], after reading it never.
-    pub fn material(&self) -> Result<case::Material, LawError> {
-        Ok(self.scaled_case()?.material)
-    }
-
     /// Refuses a case of another material, of another friction, or against something else.
     ///
     /// # Errors
