@@ -32,7 +32,6 @@ fn made_up() -> Law {
     Law {
         format: FORMAT.to_owned(),
         version: VERSION,
-        forms: Default::default(),
         constants: Constants {
             fall: [1.13, 0.31, 0.47, 0.9, 1.9, 0.4],
             exponent: [1.7, 0.21, 0.83, 0.9, 0.7, 1.5],

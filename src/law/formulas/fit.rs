@@ -12,7 +12,6 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::baseline;
-use super::family::Forms;
 use super::least_squares::{PULL, minimize};
 use super::model::{self, Axisymmetric, FORMAT, Law, Parameters, PriorUse, Provenance, VERSION, Validity};
 use super::normal::{self, NormalModel, NormalState};
@@ -297,7 +296,6 @@ pub fn fit(dir: &Path, prior: &Prior) -> Result<Law, LawError> {
     Ok(Law {
         format: FORMAT.to_owned(),
         version: VERSION,
-        forms: Forms::default(),
         constants: shear.by_fold[folds],
         normal: normal.by_fold[folds],
         validity: validity(samples)?,

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::family::{self, Forms};
+use super::family;
 use super::normal::{NormalModel, NormalState};
 use super::shear::{self, Constants, Plasticity};
 use crate::analytical::{ElasticSphere, cattaneo_mindlin, johnson};
@@ -157,9 +157,7 @@ pub struct Law {
     pub format: String,
     /// [`VERSION`].
     pub version: u32,
-    /// The words for its formulas.
-    pub forms: Forms,
-    /// Their constants.
+    /// The constants of the shear.
     pub constants: Constants,
     /// F_N0 and a0 from h.
     pub normal: NormalModel,
@@ -251,8 +249,7 @@ impl Law {
 
     /// A law from the text of its file; the error is what is wrong, in words.
     pub(in crate::law) fn from_json(text: &str) -> Result<Self, String> {
-        family::refuse_earlier(text)?;
-        json::parse(text)
+        json::parse(&family::without_names(text)?)
     }
 }
 
