@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 use asperity::internals::compute::wrong::WRONG_VARIABLE;
-use asperity::output::{OutputDirectory, Status, StepRecord, Summary, TimeByPhase, read_contact, read_history};
+use asperity::output::{OutputDirectory, RunStatus, StepRecord, Summary, TimeByPhase, read_contact, read_history};
 use common::{Scratch, program, stderr, stdout};
 
 /// Pressed and sheared, ideally plastic; everything below varies it by `--set`.
@@ -46,7 +46,7 @@ fn done(scratch: &Scratch, name: &str, options: &[&str]) -> (Vec<StepRecord>, Su
     let output = scratch.run(name, options);
     assert_eq!(output.status.code(), Some(0), "{options:?}: {}", stderr(&output));
     let (history, summary) = results(&scratch.path(name));
-    assert_eq!(summary.status, Status::Done);
+    assert_eq!(summary.status, RunStatus::Done);
     (history, summary)
 }
 
@@ -416,7 +416,7 @@ fn a_step_that_does_not_converge_ends_with_3_and_keeps_what_there_is() {
         assert!(message.contains(word), "{word}: {message}");
     }
     assert_eq!(message.lines().count(), 1, "{message}");
-    assert_eq!((summary.status, summary.steps), (Status::NotConverged, history.len()));
+    assert_eq!((summary.status, summary.steps), (RunStatus::NotConverged, history.len()));
     assert!(summary.messages.last().is_some_and(|last| last.contains("no convergence: step ")), "{:?}", summary.messages);
     // Not one step: still a history with its columns, and a summary whose numbers do not exist.
     let output = scratch.run("none", &["--set", "solver.max_iterations=1", "--set", "solver.max_cutbacks=0"]);
@@ -459,7 +459,7 @@ fn a_contact_that_leaves_the_fine_mesh_is_computed_on_a_larger_one() {
         assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
         assert!(stderr(output).contains(note), "{}", stderr(output));
         let (history, summary) = results(&scratch.path(name));
-        assert_eq!((summary.status, summary.remeshed, summary.messages.len()), (Status::Done, remeshed, 1), "{summary:?}");
+        assert_eq!((summary.status, summary.remeshed, summary.messages.len()), (RunStatus::Done, remeshed, 1), "{summary:?}");
         assert_eq!(history[0].step, 1);
         assert_eq!(history.len(), summary.steps);
         assert!((summary.a0.expect("a radius") / 0.2087 - 1.0).abs() < 0.1, "{summary:?}");
@@ -512,7 +512,7 @@ fn an_interrupted_run_ends_with_75_and_keeps_what_there_is() {
         );
         let (history, summary) = results(&scratch.path(name));
         assert!(history.len() >= 2);
-        assert_eq!((summary.status, summary.steps), (Status::Interrupted, history.len()));
+        assert_eq!((summary.status, summary.steps), (RunStatus::Interrupted, history.len()));
         assert_eq!(names(&scratch.path(name).join("fields")), ["case.pvd".to_owned(), format!("step_{:04}.vtu", history.len())]);
     }
 }
@@ -561,7 +561,7 @@ fn a_disk_that_fills_ends_with_3_and_leaves_nothing_half_written() {
     );
     assert_eq!(message.lines().filter(|line| line.starts_with("error")).count(), 1, "{message}");
     let (history, summary) = results(&scratch.path("out"));
-    assert_eq!((history.len(), summary.status), (5, Status::Interrupted));
+    assert_eq!((history.len(), summary.status), (5, RunStatus::Interrupted));
     assert!(summary.messages[0].contains("step_0005.vtu"), "{:?}", summary.messages);
     assert!(names(&scratch.path("out").join("fields")).is_empty());
 }
@@ -586,7 +586,7 @@ fn a_number_that_is_none_and_a_material_that_refuses_are_told_as_what_they_are()
         assert!(message.starts_with("error: no convergence: step ") && message.contains(what), "{wrong}: {message}");
         assert!(message.contains("the step was bisected 2 times") && !message.contains("inverts"), "{wrong}: {message}");
         let (history, summary) = results(&scratch.path(&name));
-        assert_eq!(summary.status, Status::NotConverged, "{wrong}");
+        assert_eq!(summary.status, RunStatus::NotConverged, "{wrong}");
         assert_eq!(history.len().to_string(), wrong.rsplit(':').next().expect("a number"), "{wrong}");
     }
 }
@@ -602,7 +602,7 @@ fn a_result_that_is_no_number_ends_the_run_and_not_what_was_computed_before() {
     assert_eq!(output.status.code(), Some(3), "{message}");
     assert!(message.contains("--resume"), "{message}");
     let (history, summary) = results(&scratch.path("out"));
-    assert_eq!(summary.status, Status::Failed);
+    assert_eq!(summary.status, RunStatus::Failed);
     assert!(!history.is_empty() && history.iter().all(|row| row.energy_elastic.is_finite()), "{history:?}");
     let output = scratch.run("out", &[&options[..], &["--resume"]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::family;
 use super::normal::{NormalModel, NormalState};
-use super::shear::{self, Constants, Plasticity};
+use super::shear::{self, Plasticity, ShearConstants};
 use crate::analytical::{ElasticSphere, cattaneo_mindlin, johnson};
 use crate::law::LawError;
 use crate::law::bounds::{Checked, TOLD, ValueBounds};
@@ -158,7 +158,7 @@ pub struct Law {
     /// [`VERSION`].
     pub version: u32,
     /// The constants of the shear.
-    pub constants: Constants,
+    pub constants: ShearConstants,
     /// F_N0 and a0 from h.
     pub normal: NormalModel,
     /// Where it holds.
@@ -297,7 +297,7 @@ impl LawKind for Law {
 }
 
 /// The law of one contact for given constants: see [`Law::contact`].
-pub fn contact(constants: &Constants, inputs: &Axisymmetric) -> Parameters {
+pub fn contact(constants: &ShearConstants, inputs: &Axisymmetric) -> Parameters {
     let sphere = inputs.sphere();
     let state = Plasticity::new(
         inputs.friction,

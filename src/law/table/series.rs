@@ -558,7 +558,7 @@ pub fn compose_from(case: &Case, tables: [&Tabulated; 2], for_shear: [&Tabulated
 /// the pair, on a rigid plane or against an equal sphere, pressed as deep as the pair may need,
 /// with `spare` to multiply it; R = 1, E that of the sphere. `None` of a case whose opponent does
 /// not deform.
-pub fn alone(case: &Case, opponent: Against, spare: f64) -> Option<[Case; 2]> {
+pub fn bodies_alone(case: &Case, opponent: Against, spare: f64) -> Option<[Case; 2]> {
     let scaled = case.scaled().0;
     let Some(Opponent::Deforming { material: other, .. }) = scaled.opponent.clone() else { return None };
     let deepest = scaled.greatest_indentation();
