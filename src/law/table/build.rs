@@ -294,11 +294,12 @@ pub fn backbone_of(curve: impl Iterator<Item = [f64; 2]>, way: f64, stiffness: f
 
 /// Share of the exponent's excess over 1 that a reversal has which is not the first: then it turns
 /// more sharply. Between that of the first and those after it, which a contact that goes to and fro
-/// has.
+/// has. Half and twice of it: `benches/constants`.
 const AGAIN: f64 = 0.65;
 /// Share of F_N0 below which a loss is none: the update takes such a contact for elastic.
 const ELASTIC: f64 = 1e-6;
-/// Share of the way to slip up to which a reversal is fitted.
+/// Share of the way to slip up to which a reversal is fitted. Half and twice of what is missing of
+/// it: `benches/constants`.
 const MOST_OF_THE_WAY: f64 = 0.95;
 
 /// Share of Mindlin's slip displacement at which F_T/F_N is 0.99 mu: (1 - y)^(3/2) = 0.01.

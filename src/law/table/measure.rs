@@ -117,6 +117,7 @@ impl Measured {
 }
 
 /// Share of mu above which F_T/F_N of an oblique press says that it slides, and not how it yields.
+/// Half and twice of this and of the numbers below: `benches/constants`.
 const SLIDING: f64 = 0.97;
 /// Fewest steps of an oblique press that are used, its last ones.
 const FEWEST: usize = 3;

@@ -254,7 +254,7 @@ pub(in crate::law) fn frame_of_the_centres(own: Option<Frame>, wanted: Option<Fr
 }
 
 /// Share of the force at full slip below which a point of f_T says nothing about its slope: there
-/// the tolerance of the simulated forces counts.
+/// the tolerance of the simulated forces counts. Half and twice of it: `benches/constants`.
 const SLOPE_FROM: f64 = 0.1;
 
 /// Slope with which f_T begins: the greatest of a line from its start to a point of it.
