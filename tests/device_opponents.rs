@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::Command;
 
 use asperity::internals::compute::gpu::Precision;
-use asperity::output::{OutputDirectory, Status, Summary, read_history};
+use asperity::output::{OutputDirectory, RunStatus, Summary, read_history};
 use histories::{difference, history};
 
 /// Two cases of one mesh, the first with friction that slips, tightly solved.
@@ -96,7 +96,7 @@ fn check_within(test: &str, end: &str, told: &[&str], most: f64) {
         let out = OutputDirectory::existing(&ours);
         let summary = Summary::read(&out.summary()).expect("a summary");
         assert!(summary.device.contains(&context.adapter().name), "{}", summary.device);
-        assert_eq!((summary.status, summary.linear_fallbacks), (Status::Done, 0));
+        assert_eq!((summary.status, summary.linear_fallbacks), (RunStatus::Done, 0));
         assert!(summary.messages == told && summary.device_traffic.is_some(), "{:?}", summary.messages);
         let on_cpu = Summary::read(&OutputDirectory::existing(&theirs).summary()).expect("a summary");
         assert!(on_cpu.messages.is_empty(), "{:?}", on_cpu.messages);

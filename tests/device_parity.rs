@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::Command;
 
 use asperity::internals::compute::gpu::Precision;
-use asperity::output::{OutputDirectory, Status, StepRecord, Summary, read_history};
+use asperity::output::{OutputDirectory, RunStatus, StepRecord, Summary, read_history};
 use histories::difference;
 
 const STUDY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/studies/parity.toml");
@@ -62,7 +62,7 @@ fn a_batch_has_the_cpus_histories() {
     for (number, ((theirs, _), (ours, summary))) in cpu.iter().zip(&gpu).enumerate() {
         let difference = difference(ours, theirs);
         eprintln!("case {}: {difference:.1e}", number + 1);
-        assert_eq!((summary.status, summary.linear_fallbacks), (Status::Done, 0));
+        assert_eq!((summary.status, summary.linear_fallbacks), (RunStatus::Done, 0));
         assert_told(number, summary);
         assert!(difference <= 3e-7, "case {}: {difference}", number + 1);
     }
@@ -100,7 +100,7 @@ fn a_batch_in_f32_is_held_to_f64() {
         for (number, ((theirs, _), (ours, summary))) in cpu.iter().zip(&gpu).enumerate() {
             let difference = difference(ours, theirs);
             eprintln!("case {}: {difference:.1e}", number + 1);
-            assert_eq!((summary.status, summary.precision.as_str()), (Status::Done, "f64"));
+            assert_eq!((summary.status, summary.precision.as_str()), (RunStatus::Done, "f64"));
             assert_told(number, summary);
             // Of the other cases the device makes steps in f32.
             assert_eq!(summary.confirming_iterations.is_none(), number == TURNED);

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use asperity::internals::compute::gpu::Precision;
-use asperity::output::{OutputDirectory, Status, Summary};
+use asperity::output::{OutputDirectory, RunStatus, Summary};
 use histories::{difference, history};
 
 /// The reference case, tightly solved, so that what is left is not which iterate was the first to
@@ -57,7 +57,7 @@ fn check(name: &str, dir: &Path, path_and_grid: &str, cases: usize) {
             let [theirs, ours] = ["cpu", out].map(|out| case(dir, out, number));
             let summary = Summary::read(&OutputDirectory::existing(&ours).summary()).expect("a summary");
             assert!(summary.device.contains(&context.adapter().name), "{}", summary.device);
-            assert_eq!((summary.status, summary.linear_fallbacks), (Status::Done, 0));
+            assert_eq!((summary.status, summary.linear_fallbacks), (RunStatus::Done, 0));
             assert!(summary.messages.is_empty() && summary.device_traffic.is_some(), "{:?}", summary.messages);
             let [theirs, ours] = [theirs, ours].map(|dir| history(&dir));
             assert!(ours.iter().any(|row| row.slipping_points > 0 && row.f_t > 0.0), "nothing slips");

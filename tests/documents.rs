@@ -7,6 +7,8 @@ mod case_reference;
 #[path = "documents/command_reference.rs"]
 mod command_reference;
 mod common;
+#[path = "documents/imports.rs"]
+mod imports;
 #[path = "documents/page.rs"]
 mod page;
 #[path = "documents/results.rs"]

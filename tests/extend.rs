@@ -9,7 +9,7 @@ use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 use asperity::internals::compute::wrong::WRONG_VARIABLE;
-use asperity::output::{Status, Summary, read_history};
+use asperity::output::{RunStatus, Summary, read_history};
 use common::{Scratch, difference, files, program, stderr, stdout};
 use rustix::process::{Pid, Signal, kill_process};
 
@@ -177,7 +177,7 @@ fn a_mesh_that_is_given_is_pressed_deeper() {
     done(&scratch, "out", &with(deeper, &["--extend", "-q"]));
     done(&scratch, "whole", &with(deeper, &["-q"]));
     assert_eq!(difference(&scratch.path("out"), &scratch.path("whole")), None);
-    assert_eq!(Summary::read(&scratch.path("out/summary.json")).expect("a summary").status, Status::Done);
+    assert_eq!(Summary::read(&scratch.path("out/summary.json")).expect("a summary").status, RunStatus::Done);
 }
 
 /// Of an extension that does not converge the end before it is kept, and another one goes on from
@@ -195,7 +195,7 @@ fn an_extension_that_fails_leaves_the_end_before_it() {
     let output = output.expect("the program runs");
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
     assert!(read_history(&scratch.path("out/history.csv")).expect("a history").len() > steps);
-    assert_eq!(Summary::read(&scratch.path("out/summary.json")).expect("a summary").status, Status::NotConverged);
+    assert_eq!(Summary::read(&scratch.path("out/summary.json")).expect("a summary").status, RunStatus::NotConverged);
     done(&scratch, "out", &with(SHEARED, &["--extend", "-q"]));
     done(&scratch, "whole", &with(SHEARED, &["-q"]));
     assert_eq!(difference(&scratch.path("out"), &scratch.path("whole")), None);

@@ -304,7 +304,7 @@ fn what_is_no_study_and_no_law_is_refused() {
         ("{", "is not a law"),
         ("{\"format\": \"other\", \"version\": 1}", "its format is \"other\""),
         ("{\"format\": \"asperity-law\", \"version\": 7}", "version 7"),
-        ("{\"format\": \"asperity-law\", \"version\": 2}", "forms is missing"),
+        ("{\"format\": \"asperity-law\", \"version\": 2}", "constants is missing"),
     ] {
         fs::write(&law, content).expect("law.json");
         refuse(&["law", "predict", text(&law), text(&case)], told);
@@ -349,18 +349,20 @@ fn a_law_file_with_a_number_that_no_law_has_is_refused_by_its_key() {
         (&formulas, "/validity/lambda/to", (-1.0).into(), "validity.lambda.to is -1.0"),
         (&formulas, "/normal/force", serde_json::json!([1.0]), "normal.force"),
         (&formulas, "/normal/radius/1", 0.0.into(), "normal.radius[1] is 0.0"),
-        (
-            &formulas,
-            "/forms/variable",
-            "lambda".into(),
-            "earlier versions had: forms.variable is \"lambda\", and this version has \"area\"",
-        ),
-        (&formulas, "/forms/variable", "x".into(), "forms.variable is \"x\""),
         (&formulas, "/constants/slip/1", "x".into(), "constants.slip[1] is \"x\", and has to be a number"),
     ] {
         let mut changed = good.clone();
         *changed.pointer_mut(place).expect(place) = value;
         let message = refused(&changed);
+        assert!(message.contains(told), "{told}: {message}");
+    }
+    for (word, told) in [
+        ("lambda", "earlier versions had: forms.variable is \"lambda\", and this version has \"area\""),
+        ("x", "forms is no key of this file"),
+    ] {
+        let mut named = formulas.clone();
+        named["forms"] = serde_json::json!({ "variable": word });
+        let message = refused(&named);
         assert!(message.contains(told), "{told}: {message}");
     }
     for (content, told) in [

@@ -18,7 +18,7 @@ use asperity::contact_law::{Frame, POINTS};
 use asperity::law::export::{Language, engine_files, law_files, law_source};
 use asperity::law::formulas::model::{FORMAT, Law, Provenance, VERSION, Validity};
 use asperity::law::formulas::normal::NormalModel;
-use asperity::law::formulas::shear::Constants;
+use asperity::law::formulas::shear::ShearConstants;
 use asperity::law::range::Interval;
 use asperity::law::table::{self, Level, Tabulated};
 use asperity::law::variables::Body;
@@ -32,8 +32,7 @@ fn made_up() -> Law {
     Law {
         format: FORMAT.to_owned(),
         version: VERSION,
-        forms: Default::default(),
-        constants: Constants {
+        constants: ShearConstants {
             fall: [1.13, 0.31, 0.47, 0.9, 1.9, 0.4],
             exponent: [1.7, 0.21, 0.83, 0.9, 0.7, 1.5],
             slip: [1.61, 0.23, 0.37, 1.11],

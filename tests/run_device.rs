@@ -5,7 +5,7 @@ mod device;
 use asperity::internals::compute::gpu::Precision;
 use asperity::internals::compute::lost::LOSE_VARIABLE;
 use asperity::output::DeviceTraffic;
-use asperity::output::{OutputDirectory, Status, StepRecord, Summary, read_history};
+use asperity::output::{OutputDirectory, RunStatus, StepRecord, Summary, read_history};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -56,7 +56,7 @@ fn done(dir: &Path, options: &[&str], environment: &[(&str, &str)]) -> (Summary,
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(0), "{options:?}: {said}");
     let summary = Summary::read(&OutputDirectory::existing(dir.join("out")).summary()).unwrap();
-    assert_eq!(summary.status, Status::Done);
+    assert_eq!(summary.status, RunStatus::Done);
     (summary, said)
 }
 
@@ -263,7 +263,7 @@ fn loses_its_device(adapter: &str, precision: &str, reference: &[StepRecord]) {
     let (output, history, summary) = with_shear(dir.path(), &tightly(&options), &environment);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(0), "{said}");
-    assert_eq!(summary.status, Status::Done);
+    assert_eq!(summary.status, RunStatus::Done);
     assert!(history.iter().enumerate().all(|(i, row)| row.step == i + 1), "a step is missing");
     assert!(gap(&history, reference) < 1e-7, "{precision}: {:e}", gap(&history, reference));
     // told once, on stderr and in the summary
@@ -318,7 +318,7 @@ fn a_batch_that_loses_its_device_has_every_row_once() {
     assert_eq!((cases.len(), reference.len()), (8, 8));
     let mut lost = 0;
     for ((history, summary), (theirs, _)) in cases.iter().zip(&reference) {
-        assert_eq!(summary.status, Status::Done);
+        assert_eq!(summary.status, RunStatus::Done);
         assert!(history.iter().enumerate().all(|(i, row)| row.step == i + 1), "a step is missing or doubled");
         assert!(gap(history, theirs) < 1e-7, "{:e}", gap(history, theirs));
         lost += summary.messages.iter().filter(|message| message.contains("no accepted step was lost")).count();
@@ -349,7 +349,7 @@ fn a_device_asked_for_and_lost_ends_the_run_with_one_message() {
         assert!(error.starts_with("error: ") && error.contains(part), "{part}: {error}");
     }
     assert_eq!(history.len(), LOST_AFTER);
-    assert_eq!(summary.status, Status::Interrupted);
+    assert_eq!(summary.status, RunStatus::Interrupted);
     assert!(summary.messages.len() == 1 && summary.messages[0].contains("device failed"), "{:?}", summary.messages);
 
     let dir = tempfile::tempdir().unwrap();

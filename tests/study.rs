@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use asperity::case::Case;
 use asperity::internals::compute::gpu::Precision;
-use asperity::output::{OutputDirectory, Status, Summary, read_contact, read_history};
+use asperity::output::{OutputDirectory, RunStatus, Summary, read_contact, read_history};
 use common::{stderr, stdout};
 use tempfile::TempDir;
 
@@ -157,7 +157,7 @@ fn a_directory_and_a_row_for_every_case_and_shares_give_the_same() {
         assert_eq!(case.material.hardening.yield_stress(200e3), stress.parse().ok());
         let summary = Summary::read(&out.summary()).expect("a summary");
         let records = read_history(&out.history()).expect("a history");
-        assert_eq!((summary.status, summary.steps), (Status::Done, records.len()));
+        assert_eq!((summary.status, summary.steps), (RunStatus::Done, records.len()));
         let steps = out.contact_steps().expect("contact tables");
         assert_eq!((steps.len(), steps.last()), (2, Some(&records.len())));
         assert!(!read_contact(&out.contact(steps[0])).expect("a contact").is_empty());

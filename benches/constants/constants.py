@@ -1,17 +1,21 @@
 #!/usr/bin/env python3
 """What half and twice the value of a tuned constant does to runs: their iterations, their time, their results.
 
-    python3 benches/constants/constants.py [NAME ...] [--list]
+    python3 benches/constants/constants.py [NAME ...] [--list] [--laws | --runs]
 
 The sources are copied to target/constants, and in the copy the constants are read from variables of their names; so one program,
 built there in a few minutes, has every value of each. The contacts that a constant was tuned on are pressed and sheared on a
 coarse mesh, one thread each. A row has Newton iterations, cut-backs, Krylov iterations, seconds of processor time, and by how much
-F_N and F_T are then off from those of the constant as it is, in per cent of the largest of each. Standard library only.
+F_N and F_T are then off from those of the constant as it is, in per cent of the largest of each.
+
+The constants of a table or a law are not of runs: with them a table is made of the same simulated depths (a composed one of the
+tables of both bodies), follows a path, and is held against the simulation of that path. Standard library only.
 """
 
 import argparse
 import csv
 import json
+import math
 import os
 import re
 import shutil
@@ -39,6 +43,11 @@ CONTACTS = {
     "released to half": ["path=[{indentation=0.02}, {release=0.5}]"],
     "full slip": ["path=[{indentation=0.02}, {shear=\"full-slip\"}]"],
     "scouted": ["solver.error_estimate=true"],
+    "pair, turned": ["opponent.equal=true", "path=[{indentation=0.02}, {shear=[0.002, 0.0]}, {shear=[0.002, 0.002]}]"],
+    # Along x so far that points pass the seam.
+    "pair, far": ["opponent.equal=true", "path=[{indentation=0.02}, {shear=0.05}]"],
+    "pair, far across": ["opponent.equal=true", "path=[{indentation=0.02}, {shear=[0.006, 0.004]}, {shear=[0.0, 0.008]}]"],
+    "rigid sphere": ["opponent={rigid=true, radius=2.0}"],
     "free": ["sphere.equator=free", "material.hardening={law=\"elastic\"}",
              "path=[{indentation=0.1}, {shear=0.02}]"],
     "free, plastic": ["sphere.equator=free", "path=[{indentation=0.05}, {shear=0.02}]"],
@@ -69,17 +78,111 @@ CONSTANTS = {
     "COUPLE_LINEAR": (["src/simulation/problem.rs"], ["unlike"]),
     "COUPLE_FIRST": (["src/simulation/problem.rs"], ["unlike"]),
     "ROOM": (["src/simulation/scout.rs"], ["scouted"]),
+    "SHEAR_GROWTH": (["src/simulation/path.rs", "src/output/path_share.rs"], ["reference", "soft"]),
+    "RELEASE_STEPS": (["src/simulation/path.rs", "src/study/shard.rs"], ["released", "released to half"]),
+    "CONTACT_WEIGHT": (["crates/kernels/src/contact/coulomb.rs", "src/compute/cpu.rs", "src/solver/opponent/joint.rs",
+                        "src/solver/opponent/rigid.rs"], ["reference", "soft", "pair", "unlike", "rigid sphere"]),
+    "DEGREE": (["crates/kernels/src/linalg/multigrid.rs", "crates/kernels/src/linalg/layout.rs"], ["reference", "soft", "nu 0.45", "unlike"]),
+    "LOW": (["crates/kernels/src/linalg/chebyshev.rs", "crates/kernels/src/linalg/multigrid.rs", "crates/kernels/src/linalg/layout.rs"],
+            ["reference", "soft", "nu 0.45", "unlike"]),
+    "HIGH": (["crates/kernels/src/linalg/chebyshev.rs", "crates/kernels/src/linalg/layout.rs"], ["reference", "soft", "nu 0.45", "unlike"]),
+    "COARSEST_DEGREE": (["crates/kernels/src/linalg/multigrid.rs", "crates/kernels/src/linalg/layout.rs"], ["reference", "soft", "nu 0.45"]),
+    "COARSEST_LOW": (["crates/kernels/src/linalg/multigrid.rs", "crates/kernels/src/linalg/layout.rs"], ["reference", "soft", "nu 0.45"]),
+    "COVERED": (["crates/kernels/src/contact/mortar.rs", "crates/kernels/src/contact/inversion.rs"], ["pair", "pair, turned", "unlike"]),
+    "NARROW": (["crates/kernels/src/contact/mortar.rs"], ["pair", "pair, far"]),
+    "MARGIN": (["crates/kernels/src/contact/mortar.rs"], ["pair", "pair, far"]),
+    "OWN_IMAGE": (["crates/kernels/src/contact/mortar.rs"], ["pair", "pair, far"]),
+    "SEAM": (["crates/kernels/src/contact/pair.rs"], ["pair", "pair, turned"]),
+    "SEPARATION": (["crates/kernels/src/contact/inversion.rs"], ["pair, turned", "pair, far across"]),
+    "BEYOND": (["crates/kernels/src/contact/inversion.rs"], ["pair, turned", "pair, far across"]),
+    "WITHIN": (["crates/kernels/src/contact/inversion.rs"], ["pair, turned", "pair, far across"]),
+    "TILT": (["crates/kernels/src/contact/inversion.rs"], ["pair, turned", "pair, far across"]),
+    "THIN": (["crates/kernels/src/contact/inversion.rs"], ["pair, turned", "pair, far across"]),
 }
-RUNNER = '''use asperity::{Case, Earlier, Options, Simulation};
+# What laws are held against: the bodies that are tabulated, the path. One body is the law, two are composed.
+IDEAL, STRONGER = "material.hardening={law=\"ideal\", yield_stress=400.0}", "material.hardening={law=\"ideal\", yield_stress=800.0}"
+POWER = "material.hardening={law=\"power\", yield_stress=100.0, coefficient=300.0, exponent=0.3}"
+SHEARED = "path=[{indentation=0.009}, {shear=0.0025}]"
+BODY = "{youngs_modulus=200e3, poissons_ratio=0.3, hardening={law=\"ideal\", yield_stress=%s}}"
+LAWS = {
+    "to and fro": ([[IDEAL]], ["path=[{indentation=0.01}, {shear=0.002}, {shear=-0.001}, {shear=0.002}, {release=0.5}]"]),
+    "hardening": ([[POWER]], [POWER, "path=[{indentation=0.01}, {shear=0.002}, {shear=-0.001}, {shear=0.002}, {release=0.5}]"]),
+    "oblique": ([[IDEAL]], ["path=[{indentation=0.01, shear=0.003}]"]),
+    "composed": ([[IDEAL, "opponent.equal=true"], [STRONGER, "opponent.equal=true"]],
+                 ["sphere.radius=2.0", SHEARED, "opponent={radius=2.0, material=" + BODY % "800.0" + "}"]),
+    "weak on a flat": ([[IDEAL, "opponent.equal=true"], [STRONGER, "opponent.equal=true"]],
+                       [SHEARED, "opponent={flat=true, material=" + BODY % "800.0" + "}"]),
+    "weak flat": ([[STRONGER, "opponent.equal=true"], [IDEAL, "opponent.equal=true"]],
+                  [STRONGER, SHEARED, "opponent={flat=true, material=" + BODY % "400.0" + "}"]),
+}
+OF_LAWS = {
+    "AGAIN": (["src/law/table/build.rs"], ["to and fro", "hardening"]),
+    "MOST_OF_THE_WAY": (["src/law/table/build.rs"], ["to and fro", "hardening"]),
+    "SLOPE_FROM": (["src/law/table/tabulated.rs"], ["to and fro", "hardening"]),
+    "SLIDING": (["src/law/table/measure.rs"], ["oblique"]),
+    "FEWEST": (["src/law/table/measure.rs"], ["oblique"]),
+    "RIPPLE": (["src/law/table/measure.rs"], ["oblique"]),
+    "NOTHING": (["src/law/table/measure.rs"], ["oblique"]),
+    "RISING": (["src/law/table/series.rs"], ["composed", "weak on a flat", "weak flat"]),
+    "CONSTRAINT": (["src/law/table/series.rs"], ["composed", "weak on a flat", "weak flat"]),
+    "LEAST": (["src/law/table/series.rs"], ["weak on a flat", "weak flat"]),
+    "MOST_CREEP": (["src/law/table/series.rs"], ["composed", "weak on a flat", "weak flat"]),
+    "NO_CREEP": (["src/law/table/series.rs"], ["composed", "weak on a flat", "weak flat"]),
+}
+ELEMENTS = 5
+RUNNER = '''use asperity::law::table::{Tabulated, build, compose, depths, study_text};
+use asperity::law::LawFile;
+use asperity::session::{DeviceChoice, PrecisionChoice};
+use asperity::study::{Options as StudyOptions, Study, StudyProgress};
+use asperity::{Case, Earlier, Options, Simulation};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let case = Case::load(Path::new(&arguments[0]), &arguments[2..])?;
-    let out = Some(PathBuf::from(&arguments[1]));
-    let options = Options { out, earlier: Earlier::Replace, threads: std::num::NonZeroUsize::new(1), ..Options::default() };
-    Simulation::with(&case, options)?.run()?;
+type Answer<T> = Result<T, Box<dyn std::error::Error>>;
+
+/// Simulates a case.
+fn simulate(case: &Case, out: &Path) -> Answer<()> {
+    let options = Options { out: Some(out.into()), earlier: Earlier::Replace, threads: std::num::NonZeroUsize::new(1), ..Options::default() };
+    Simulation::with(case, options)?.run()?;
     Ok(())
+}
+
+/// Simulates the depths of a body's table.
+fn study(case: &Case, dir: &Path, elements: usize) -> Answer<()> {
+    let study = Study::parse(&study_text(case, elements, &depths(case)?), "table")?;
+    let (device, precision) = (DeviceChoice::Cpu, PrecisionChoice::Auto);
+    let options = StudyOptions { device, precision, threads: 1, shard: None, resume: false, retry: false, force: true };
+    asperity::study::run(&study, dir, &options, Arc::new(StudyProgress::new(true)), Arc::default())?;
+    Ok(std::fs::write(dir.with_extension("toml"), case.to_toml())?)
+}
+
+/// The law of these tables along the path of the case.
+fn law(case: &Case, out: &Path, elements: usize, dirs: &[PathBuf]) -> Answer<()> {
+    let table = |dir: &PathBuf| -> Answer<Tabulated> {
+        Ok(build(dir, &Case::load(&dir.with_extension("toml"), &[])?, elements)?.table)
+    };
+    let tables: Vec<Tabulated> = dirs.iter().map(table).collect::<Answer<_>>()?;
+    let one = match &tables[..] {
+        [sphere, opponent] => compose(case, [sphere, opponent])?,
+        _ => tables[0].clone(),
+    };
+    let mut text = String::from("h,delta_T,F_N,F_T\\n");
+    for point in LawFile::Table(Box::new(one)).follow(case)?.0 {
+        text += &format!("{},{},{},{}\\n", point.h, point.delta_t, point.f_n, point.f_t);
+    }
+    Ok(std::fs::write(out, text)?)
+}
+
+fn main() -> Answer<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [what, case, out, elements, dirs] = [0, 1, 2, 3, 4].map(|i| arguments[i].as_str());
+    let (case, out) = (Case::load(Path::new(case), &arguments[5..])?, Path::new(out));
+    let elements = elements.parse()?;
+    match what {
+        "run" => simulate(&case, out),
+        "study" => study(&case, out, elements),
+        _ => law(&case, out, elements, &dirs.split(',').map(PathBuf::from).collect::<Vec<_>>()),
+    }
 }
 '''
 MANIFEST = '''[package]
@@ -88,7 +191,7 @@ version = "0.0.0"
 edition = "2024"
 
 [dependencies]
-asperity = { path = "../source", default-features = false }
+asperity = { path = "../source", default-features = false, features = ["law"] }
 
 [profile.release]
 debug = false
@@ -143,55 +246,98 @@ def built():
 
 def halved_and_doubled(kind, value):
     number = eval(value.replace("_", ""))
+    if 0.9 <= number < 1.0:
+        # A share of nearly all: what is missing of it.
+        return [1.0 - 2.0 * (1.0 - number), 1.0 - 0.5 * (1.0 - number)]
     return [max(1, round(number * by)) if kind in ("usize", "u32") else number * by for by in (0.5, 2.0)]
+
+
+COARSE = ["mesh.elements_per_contact_radius=4", "mesh.surface_elements_per_contact_radius=8", "output.plots=false", "output.fields=none"]
+
+
+def called(program, what, out, settings, given=(), dirs=()):
+    """Calls the program."""
+    arguments = [program, what, ROOT / "fixtures/cases/ideal.toml", out, str(ELEMENTS), ",".join(map(str, dirs)), *settings]
+    return subprocess.run(arguments, env=os.environ | {"RAYON_NUM_THREADS": "1"} | dict(given), capture_output=True, text=True)
+
+
+def read(file, of=""):
+    """h, delta_T along x and y, F_N, F_T along x and y; without what lies in y it is none."""
+    columns = ("h", "delta_T", "delta_T_y", f"F_N{of}", f"F_T{of}", f"F_T_y{of}")
+    with file.open() as opened:
+        return [(0.0,) * 6, *(tuple(float(row.get(column) or 0.0) for column in columns) for row in csv.DictReader(opened))]
 
 
 def run(program, contact, given):
     """What a run took, and its history."""
-    mesh = ["mesh.elements_per_contact_radius=4", "mesh.surface_elements_per_contact_radius=8", "solver.error_estimate=false",
-            "output.plots=false", "output.fields=none"]
     settings = CONTACTS[contact]
     path = [] if any(setting.startswith("path=") for setting in settings) else ["path.1.shear=0.003"]
     out = PLACE / "run"
     shutil.rmtree(out, ignore_errors=True)
-    ended = subprocess.run([program, ROOT / "fixtures/cases/ideal.toml", out, *mesh, *path, *settings], env=os.environ | given,
-                           capture_output=True, text=True)
+    ended = called(program, "run", out, [*COARSE, "solver.error_estimate=false", *path, *settings], given)
     try:
-        summary = json.loads((out / "summary.json").read_text())
-        with (out / "history.csv").open() as file:
-            rows = [tuple(float(row[column]) for column in ("h", "delta_T", "F_N", "F_T")) for row in csv.DictReader(file)]
-        rows.insert(0, (0.0, 0.0, 0.0, 0.0))
+        return json.loads((out / "summary.json").read_text()), read(out / "history.csv")
     except FileNotFoundError:
         raise SystemExit(f"{contact}: {ended.stderr}") from None
-    return summary, rows
 
 
-def off(rows, reference):
-    """Largest difference from a curve over the way of the plate, in per cent of its largest F_N and F_T."""
+def simulated(program, name):
+    """The depths of a law's bodies, and the path that it is held against; made once."""
+    bodies, settings = LAWS[name]
+    place = PLACE / "laws"
+    dirs = []
+    for body in bodies:
+        dirs.append(place / re.sub(r"\W+", "-", " ".join(body)).strip("-"))
+        if not dirs[-1].with_suffix(".toml").exists():
+            ended = called(program, "study", dirs[-1], body)
+            if ended.returncode:
+                raise SystemExit(f"{name}: {ended.stderr}")
+    out = place / re.sub(r"\W+", "-", name)
+    if not (out / "summary.json").exists():
+        ended = called(program, "run", out, [*COARSE, *settings])
+        if ended.returncode:
+            raise SystemExit(f"{name}: {ended.stderr}")
+    # In the limit of fine meshes, as the tables are.
+    return dirs, read(out / "history.csv", "_limit")
+
+
+def followed(program, name, dirs, given):
+    """The law along the path; the words with which it is refused."""
+    out = PLACE / "laws/followed.csv"
+    ended = called(program, "law", out, LAWS[name][1], given, dirs)
+    return ended.stderr.strip() if ended.returncode else read(out)
+
+
+def off(rows, reference, of=max):
+    """Largest difference from a curve over the way of the plate, in per cent of its largest F_N and F_T; or their mean."""
     def way(rows):
         length, before, ways = 0.0, rows[0], []
         for row in rows:
-            length += abs(row[0] - before[0]) + abs(row[1] - before[1])
+            length += abs(row[0] - before[0]) + math.hypot(row[1] - before[1], row[2] - before[2])
             ways.append(length)
             before = row
         return ways
 
-    def at(ways, values, s):
+    def at(ways, s):
         for i in range(1, len(ways)):
             if s <= ways[i]:
                 span = ways[i] - ways[i - 1]
-                return values[i] if span == 0.0 else values[i - 1] + (values[i] - values[i - 1]) * (s - ways[i - 1]) / span
-        return values[-1]
+                share = 1.0 if span == 0.0 else (s - ways[i - 1]) / span
+                return [a + (b - a) * share for a, b in zip(rows[i - 1], rows[i])]
+        return rows[-1]
 
-    own, theirs, worst = way(rows), way(reference), []
-    normal = max(abs(row[2]) for row in reference)
-    for column in (2, 3):
-        values, found = ([row[column] for row in rows] for rows in (reference, rows))
-        largest = max(map(abs, values))
-        # Without a shear F_T is rounding.
-        scale = largest if largest > 1e-3 * normal else normal
-        worst.append(100 * max(abs(value - at(own, found, s)) for s, value in zip(theirs, values)) / scale)
-    return worst
+    ways = way(rows)
+    pairs = [(row, at(ways, s)) for s, row in zip(way(reference), reference)]
+    normal = max(abs(row[3]) for row in reference)
+    largest = max(math.hypot(row[4], row[5]) for row in reference)
+    # Without a shear F_T is rounding.
+    tangential = largest if largest > 1e-3 * normal else normal
+    return [100 * of([abs(a[3] - b[3]) for a, b in pairs]) / normal,
+            100 * of([math.hypot(a[4] - b[4], a[5] - b[5]) for a, b in pairs]) / tangential]
+
+
+def mean_square(values):
+    return math.sqrt(sum(value * value for value in values) / len(values))
 
 
 def told(contact, summary, rows, reference):
@@ -201,20 +347,11 @@ def told(contact, summary, rows, reference):
     return f"{contact}{status} | {counts} | {summary['cpu_s']:.1f} | {distance}"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("names", nargs="*", metavar="NAME", help="constants; by default all")
-    parser.add_argument("--list", action="store_true", help="the constants, and nothing else")
-    options = parser.parse_args()
-    if options.list:
-        return print("\n".join(f"{name:20} {files[0]}" for name, (files, _) in CONSTANTS.items()))
-    copied()
-    values = {name: given_from_outside(name, files) for name, (files, _) in CONSTANTS.items()}
-    program = built()
+def runs(program, values, names):
     reference = {}
     heads = ["constant", "value", "contact", "Newton, cut-backs, Krylov", "CPU s", "F_N, F_T off by, %"]
     print(f"| {' | '.join(heads)} |\n|{'---|' * len(heads)}", flush=True)
-    for name in options.names or CONSTANTS:
+    for name in names:
         for contact in CONSTANTS[name][1]:
             if contact not in reference:
                 reference[contact] = run(program, contact, {})
@@ -222,6 +359,40 @@ def main():
             print(f"| `{name}` | {values[name][1]} | {told(contact, summary, rows, rows)} |", flush=True)
             for value in halved_and_doubled(*values[name]):
                 print(f"| | {value:g} | {told(contact, *run(program, contact, {name: repr(value)}), rows)} |", flush=True)
+
+
+def laws(program, values, names):
+    heads = ["constant", "value", "law", "F_N, F_T off the simulation by, % rms", "off the law as it is by, % rms"]
+    print(f"| {' | '.join(heads)} |\n|{'---|' * len(heads)}", flush=True)
+    for name in names:
+        for law in OF_LAWS[name][1]:
+            dirs, path = simulated(program, law)
+            rows = followed(program, law, dirs, {})
+            apart = lambda a, b: a if isinstance(a, str) else ", ".join(f"{x:.2g}" if x > 1e-9 else "0" for x in off(a, b, mean_square))
+            print(f"| `{name}` | {values[name][1]} | {law} | {apart(rows, path)} | |", flush=True)
+            for value in halved_and_doubled(*values[name]):
+                there = followed(program, law, dirs, {name: repr(value)})
+                print(f"| | {value:g} | {law} | {apart(there, path)} | {apart(there, rows)} |", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="NAME", help="constants; by default all")
+    parser.add_argument("--list", action="store_true", help="the constants, and nothing else")
+    parser.add_argument("--runs", action="store_true", help="only those of runs")
+    parser.add_argument("--laws", action="store_true", help="only those of laws")
+    options = parser.parse_args()
+    everything = CONSTANTS | OF_LAWS
+    if options.list:
+        return print("\n".join(f"{name:20} {files[0]}" for name, (files, _) in everything.items()))
+    copied()
+    values = {name: given_from_outside(name, files) for name, (files, _) in everything.items()}
+    program = built()
+    wanted = options.names or everything
+    for only, table, of in [(options.runs, runs, CONSTANTS), (options.laws, laws, OF_LAWS)]:
+        names = [name for name in wanted if name in of]
+        if names and (only or not (options.runs or options.laws)):
+            table(program, values, names)
 
 
 if __name__ == "__main__":

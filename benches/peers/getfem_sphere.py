@@ -20,11 +20,8 @@ SEARCH = ["lsearch", "simplest", "alpha max ratio", 1.5, "alpha min", 0.05, "alp
 FACES = [(0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)]
 
 
-def main():
-    gf.util_trace_level(1)
-    with open(sys.argv[1]) as file:
-        job = json.load(file)
-    case, nodes = job["case"], np.array(job["nodes"])
+def meshed(job, nodes):
+    """The mesh with its three regions."""
     mesh = gf.Mesh("empty", 3)
     hexahedron = gf.GeoTrans("GT_QK(3,1)")
     for element in job["elements"]:
@@ -46,7 +43,15 @@ def main():
     for region, faces in regions.items():
         print(f"region {region}: {len(faces)} faces", file=sys.stderr)
         mesh.set_region(region, np.array(faces).T)
+    return mesh
 
+
+def main():
+    gf.util_trace_level(1)
+    with open(sys.argv[1]) as file:
+        job = json.load(file)
+    case, nodes = job["case"], np.array(job["nodes"])
+    mesh = meshed(job, nodes)
     whole, scalar, pressure, multiplier = (gf.MeshFem(mesh, n) for n in (3, 1, 1, 1))
     whole.set_fem(gf.Fem("FEM_QK(3,1)"))
     # u_y = 0 on the symmetry plane.

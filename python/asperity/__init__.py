@@ -11,10 +11,11 @@ from .errors import AsperityError, CaseError, Interrupted, MissingPackage, NotCo
 from .fields import Fields, Mesh
 from .law import Check, Contacts, Law
 from .picture import Picture
+from .run import Run
+from .study import Study
 
 # The functions come after the modules of the same names: `asperity.run` is the function.
-from .run import Run, run
-from .study import Study, study
+from ._compute import run, study  # isort: skip
 
 __all__ = [
     "AsperityError",

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from .errors import CaseError
+from ._errors import CaseError
 
 __all__ = ["as_array", "described", "items", "numbers", "path", "text", "truth"]
 

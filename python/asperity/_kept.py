@@ -11,7 +11,7 @@ import weakref
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar
 
-from .errors import AsperityError
+from ._errors import AsperityError
 
 __all__ = ["Directory", "Scratch"]
 

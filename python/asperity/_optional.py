@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 from types import ModuleType
 
-from .errors import MissingPackage
+from ._errors import MissingPackage
 
 
 def need(module: str, package: str, what: str) -> ModuleType:

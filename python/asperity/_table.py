@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from ._arguments import as_array, items
+from ._errors import AsperityError, CaseError
 from ._html import table
 from ._optional import need
-from .errors import AsperityError, CaseError
 
 __all__ = ["Table"]
 

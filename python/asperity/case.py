@@ -10,7 +10,7 @@ from typing import Any
 from ._arguments import described, items, path
 from ._arguments import text as _text
 from ._asperity import NativeCase, toml_value
-from .errors import CaseError
+from ._errors import CaseError
 
 __all__ = ["Case"]
 

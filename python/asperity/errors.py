@@ -2,21 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from .run import Run
-    from .study import Study
+from ._errors import AsperityError, CaseError, MissingPackage
+from .run import Run
+from .study import Study
 
 __all__ = ["AsperityError", "CaseError", "Interrupted", "MissingPackage", "NotConverged"]
-
-
-class AsperityError(Exception):
-    """Anything that this package raises, but for :class:`Interrupted`."""
-
-
-class CaseError(AsperityError, ValueError):
-    """A case, a study or an argument that is refused: what, where, and what is allowed."""
 
 
 class NotConverged(AsperityError):
@@ -28,10 +20,6 @@ class NotConverged(AsperityError):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (*self.args, self.run)
-
-
-class MissingPackage(AsperityError, ImportError):
-    """An optional package that is not installed."""
 
 
 class Interrupted(KeyboardInterrupt):

@@ -10,8 +10,8 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ._arguments import as_array, items
+from ._errors import AsperityError, CaseError
 from ._optional import need
-from .errors import AsperityError, CaseError
 
 __all__ = ["Fields", "Mesh"]
 

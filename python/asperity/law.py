@@ -14,14 +14,15 @@ from numpy.typing import ArrayLike
 
 from ._arguments import described, numbers, path, text, truth
 from ._asperity import NativeContacts, NativeLaw, fit_law, interpolate_law, table_law, table_study
+from ._compute import study as run_study
 from ._html import table
 from ._kept import Scratch
+from ._law import AnyLaw
 from ._table import Table
 from .case import Case, as_case
 from .errors import CaseError, Interrupted
 from .picture import Picture, asked
 from .study import Study
-from .study import study as run_study
 
 __all__ = ["Check", "Contacts", "Law"]
 
@@ -98,15 +99,10 @@ def _restored(kind: type[Contacts], parameters: np.ndarray, memory: np.ndarray) 
     return kind(NativeContacts.restore(parameters, memory))
 
 
-class Law:
+class Law(AnyLaw):
     """A contact law: F_N and F_T of an elastic-plastic sphere that is pressed and sheared."""
 
-    __slots__ = ("_native",)
-
-    def __init__(self, native: NativeLaw) -> None:
-        if not isinstance(native, NativeLaw):
-            raise CaseError(f"law: is made of {described(native)}. Allowed: what Law.built_in(), load(), fit() and tabulate() give")
-        self._native = native
+    __slots__ = ()
 
     def __copy__(self) -> Law:
         # It never changes.

@@ -6,7 +6,7 @@ import os
 
 from ._arguments import described, path, text, truth
 from ._asperity import NativePicture
-from .errors import CaseError
+from ._errors import CaseError
 
 __all__ = ["Picture"]
 

@@ -1,4 +1,4 @@
-"""One run: from a case to its results."""
+"""The results of one run."""
 
 from __future__ import annotations
 
@@ -6,29 +6,24 @@ import contextlib
 import json
 import operator
 import os
-from collections.abc import Mapping
 from functools import cached_property
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from . import _asperity, _table
-from ._arguments import described, path, text, truth
+from ._arguments import described, path
+from ._errors import AsperityError, CaseError
 from ._html import summary_table
 from ._kept import Directory, Scratch
+from ._law import AnyLaw
 from ._optional import need
-from ._progress import Bar, Listener, bar_wanted
 from ._table import Table
-from .case import Case, as_case
-from .errors import AsperityError, CaseError, Interrupted, NotConverged
+from .case import Case
 from .fields import Fields, Mesh, read_vtu
 from .picture import Picture, asked
 
-if TYPE_CHECKING:
-    from .law import Law
-
-__all__ = ["Run", "run"]
+__all__ = ["Run"]
 
 # Of the program's pictures, with their names of forces and lengths.
 _BLUE, _VERMILION = "#0072b2", "#d55e00"
@@ -125,18 +120,16 @@ class Run(Directory):
         fields = self.fields()
         return Mesh(fields.points, fields.cells)
 
-    def plot(self, name: str | None = None, *, law: Law | None = None, width: str | None = None, title: bool = True) -> Picture:
+    def plot(self, name: str | None = None, *, law: AnyLaw | None = None, width: str | None = None, title: bool = True) -> Picture:
         """A picture as ``asperity plot`` draws it, which a notebook shows and ``save`` writes.
 
         :param name: ``"forces"``, ``"ratio"``, ``"stick"``, ``"slip"``, ``"indentation"``, ``"pressure"``, ``"contact"``, ``"plane"``, ``"moments"`` or, with
             ``law``, ``"law"``; by default the last of these with a law, else the forces of the shear or, without one, of the press.
-        :param law: a law to draw beside the run.
+        :param law: a :class:`Law` to draw beside the run.
         :param width: as ``"85mm"``, ``"3.3in"`` or ``"640px"``; the picture is laid out for it.
         :param title: whether diagrams have titles.
         """
-        from .law import Law
-
-        if law is not None and not isinstance(law, Law):
+        if law is not None and not isinstance(law, AnyLaw):
             raise CaseError(f"law: is {described(law)}. Allowed: a Law, None")
         chosen = asked(name, width, title)
         self._file("history.csv")
@@ -199,63 +192,3 @@ def _axes(ax: Any) -> Any:
     if ax is not None:
         return ax
     return need("matplotlib.pyplot", "matplotlib", "a plot").subplots()[1]
-
-
-def run(
-    case: Case | Mapping[str, Any] | str | os.PathLike[str],
-    out: str | os.PathLike[str] | None = None,
-    device: str = "auto",
-    threads: int | None = None,
-    progress: Listener | bool | None = None,
-    *,
-    precision: str = "auto",
-    resume: bool = False,
-    extend: bool = False,
-    force: bool = False,
-) -> Run:
-    """Simulates a case, with the bits and files of ``asperity run``.
-
-    Other threads of Python go on meanwhile. Ctrl-C ends the run after its present step and keeps what there is.
-
-    :param case: a :class:`Case`, a dictionary, the path of a case file, or its text.
-    :param out: directory for the results: a new or an empty one, or one with an earlier result and ``resume``, ``extend`` or ``force``. Without one they are in a
-        temporary directory that lives as long as the answer.
-    :param device: ``"auto"``, ``"cpu"`` or ``"gpu"``.
-    :param threads: threads to use, by default all of the machine's; results do not depend on it.
-    :param progress: by default a bar in terminals and notebooks; ``True`` or ``False``, or a function that is called with the share of the path that is
-        behind, the number of the step and a text (a note has the share -1). What it raises ends the run like Ctrl-C.
-    :param precision: ``"auto"``, ``"f32"``, ``"f64"`` or ``"mixed"`` (see ``asperity run --help``).
-    :param resume: go on with an unfinished run of the same case in ``out``.
-    :param extend: go on from the end of the finished run in ``out`` along a longer path: its case with segments added after the last one.
-    :param force: replace an earlier result in ``out``.
-    :raises CaseError: the case or an argument is refused.
-    :raises NotConverged: a step failed, or the contact outgrew its mesh; the results up to there are in ``run`` of the exception.
-    :raises Interrupted: a :class:`KeyboardInterrupt` with the results up to there in ``run``.
-    :raises AsperityError: anything else.
-    """
-    case = as_case(case)
-    if not (progress is None or callable(progress) or isinstance(progress, bool)):
-        raise CaseError(f"progress: is {described(progress)}. Allowed: True, False, or a function of a share, a step and a text")
-    words = text("device", device), text("precision", precision)
-    resume, extend, force = truth("resume", resume), truth("extend", extend), truth("force", force)
-    # One that is made here goes with the answer.
-    kept = Scratch() if out is None else None
-    directory = Path(kept.name) if kept is not None else path("out", out)
-    bar = Bar() if progress is True or (progress is None and bar_wanted()) else None
-    listener: Listener | None = bar if bar is not None else (progress if callable(progress) else None)
-    try:
-        status, message, raised = _asperity.run(case._native, directory, *words, threads, resume, extend, force, listener)
-    finally:
-        if bar is not None:
-            bar.close()
-    if status == "interrupted" and not (directory / "summary.json").exists():
-        raise raised or Interrupted(message or "interrupted")
-    result = Run(directory)
-    result._kept = kept
-    if raised is not None:
-        if isinstance(raised, KeyboardInterrupt):
-            raise Interrupted(message or "interrupted after the last step", run=result) from raised
-        raise raised
-    if status != "done":
-        raise NotConverged(message or status, result)
-    return result

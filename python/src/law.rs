@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use asperity::Canceller;
 use asperity::case::Segment;
 use asperity::contact_law::path::PathPoint;
-use asperity::law::check::{Checked, check, protocol};
+use asperity::law::check::{CheckedPath, check, protocol};
 use asperity::law::data::Point;
 use asperity::law::export::{Language, law_files, law_source};
 use asperity::law::formulas::fit::fit;
@@ -286,7 +286,7 @@ impl NativeLaw {
 }
 
 /// One checked path for Python.
-fn path<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py, PyDict>> {
+fn path<'py>(py: Python<'py>, checked: &CheckedPath) -> PyResult<Bound<'py, PyDict>> {
     let answer = PyDict::new(py);
     let column = |of: fn(&StepRecord) -> f64| PyArray1::from_iter(py, checked.rows.iter().map(of));
     let law = |i: usize| PyArray1::from_iter(py, checked.law.iter().map(|forces| forces[i]));

@@ -538,7 +538,7 @@ pub fn takes_decimals(name: &str) -> bool {
 }
 
 /// The known name closest to an unknown one.
-pub fn nearest(name: &str) -> Option<String> {
+pub fn nearest_key(name: &str) -> Option<String> {
     let names: Vec<String> = KEYS.iter().flat_map(|key| [key.dotted(), key.name.to_owned()]).collect();
     super::likeness::nearest(name, &names.iter().map(String::as_str).collect::<Vec<_>>())
 }

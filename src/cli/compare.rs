@@ -11,7 +11,7 @@ use super::{CliError, Exit, print, print_json};
 use crate::case::{Case, PictureFormat, PictureWidth};
 use crate::output::plots::axes::{Axes, AxisUnits};
 use crate::output::plots::{OverlaidRun, Sheet, View, plot_overlay};
-use crate::output::{OutputDirectory, Status, StepRecord, Summary, read_history};
+use crate::output::{OutputDirectory, RunStatus, StepRecord, Summary, read_history};
 
 /// Compare runs, in a table and a picture.
 ///
@@ -118,7 +118,7 @@ pub fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
         print(&table(&runs, unlike))?;
         print(&format!("\n{}\n", args.out.display()))?;
     }
-    for run in runs.iter().filter(|run| run.summary.status != Status::Done) {
+    for run in runs.iter().filter(|run| run.summary.status != RunStatus::Done) {
         // A closed stderr does not change the comparison.
         let _ = writeln!(std::io::stderr(), "warning: {}: {}", run.name, run.summary.status);
     }

@@ -55,7 +55,7 @@ pub fn explain(args: &ExplainArgs) -> Result<Exit, CliError> {
     // A key of a study stands below base, or in quotes in the grid.
     let found = keys::find(name.strip_prefix("base.").unwrap_or(name));
     if found.is_empty() {
-        return Err(CliError::UnknownKey { key: name.clone(), nearest: keys::nearest(name) });
+        return Err(CliError::UnknownKey { key: name.clone(), nearest: keys::nearest_key(name) });
     }
     let texts: Vec<String> = found.into_iter().map(said).collect();
     print(&texts.join("\n"))?;

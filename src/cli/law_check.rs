@@ -12,7 +12,7 @@ use super::options::{DeviceArgs, Verbosity};
 use super::{CliError, Exit, print};
 use crate::case::{Case, Friction, Material};
 use crate::law::check::{
-    AIMS, Checked, MOST_MESH_ERROR, Path, Ranges, check, materials, opponent_of, protocol, random_paths, table, turning_paths,
+    AIMS, CheckedPath, MOST_MESH_ERROR, Path, Ranges, check, materials, opponent_of, protocol, random_paths, table, turning_paths,
 };
 use crate::law::{LawError, LawFile};
 use crate::output::write_own;
@@ -148,10 +148,10 @@ fn in_words(material: &Material) -> String {
 }
 
 /// How many paths are within the aims, by kind and by opponent, and whether that is enough.
-fn verdict(checked: &[Checked], elements: usize, goal: f64) -> (String, bool) {
-    let (turned, checked): (Vec<&Checked>, Vec<&Checked>) = checked.iter().partition(|one| one.turns());
-    let counted: Vec<&Checked> = checked.iter().copied().filter(|one| one.counts()).collect();
-    let share = |of: &dyn Fn(&Checked) -> bool| {
+fn verdict(checked: &[CheckedPath], elements: usize, goal: f64) -> (String, bool) {
+    let (turned, checked): (Vec<&CheckedPath>, Vec<&CheckedPath>) = checked.iter().partition(|one| one.turns());
+    let counted: Vec<&CheckedPath> = checked.iter().copied().filter(|one| one.counts()).collect();
+    let share = |of: &dyn Fn(&CheckedPath) -> bool| {
         let of: Vec<_> = counted.iter().filter(|one| of(one)).collect();
         (of.iter().filter(|one| one.within()).count(), of.len())
     };
@@ -164,7 +164,7 @@ fn verdict(checked: &[Checked], elements: usize, goal: f64) -> (String, bool) {
     }
     // Writing to a String cannot fail.
     for name in groups {
-        let (within, of) = share(&|one: &Checked| one.name == name || opponent_of(&one.case) == name);
+        let (within, of) = share(&|one: &CheckedPath| one.name == name || opponent_of(&one.case) == name);
         let _ = writeln!(text, "{name:<38} {within} of {of} within");
     }
     let (within, of) = share(&|_| true);
@@ -195,7 +195,7 @@ fn verdict(checked: &[Checked], elements: usize, goal: f64) -> (String, bool) {
     (text, met)
 }
 
-fn write_curves(dir: &std::path::Path, name: &str, checked: &[Checked]) -> Result<(), CliError> {
+fn write_curves(dir: &std::path::Path, name: &str, checked: &[CheckedPath]) -> Result<(), CliError> {
     fs::create_dir_all(dir).map_err(|source| CliError::Out { dir: dir.to_owned(), what: "be created", source })?;
     let plain = |text: &str| {
         let words: Vec<String> = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '.').map(str::to_lowercase).collect();

@@ -11,7 +11,7 @@ use super::input::InputFile;
 use super::options::{DeviceArgs, Verbosity, out_or_name};
 use super::signals::stop_flag;
 use super::{CliError, Exit, called};
-use crate::output::{LoggedProgress, OutputDirectory, RESULT_MARKER, Status, progress, refuse_input};
+use crate::output::{LoggedProgress, OutputDirectory, RESULT_MARKER, RunStatus, progress, refuse_input};
 use crate::quoting;
 use crate::session::{Canceller, Earlier, Options, SessionError, Simulation};
 
@@ -110,9 +110,9 @@ fn command_line() -> String {
 fn report(outcome: &crate::session::Outcome, steps: usize, out: &Path, verbosity: &Verbosity) -> Result<Exit, CliError> {
     let (summary, dir, quiet) = (&outcome.summary, out.display(), verbosity.quiet);
     let code = match outcome.status {
-        Status::Done => Exit::Done,
-        Status::Interrupted => Exit::Interrupted,
-        Status::NotConverged | Status::ContactOutgrewMesh | Status::Failed => Exit::NotConverged,
+        RunStatus::Done => Exit::Done,
+        RunStatus::Interrupted => Exit::Interrupted,
+        RunStatus::NotConverged | RunStatus::ContactOutgrewMesh | RunStatus::Failed => Exit::NotConverged,
     };
     let error = if outcome.ended_before {
         if outcome.is_done() && !quiet {

@@ -7,7 +7,7 @@ use crate::contact_law::{Centres, ContactParameters, ContactState};
 use crate::law::plots::as_step;
 use crate::law::range::OutOfRange;
 use crate::law::report::LAMBDA_BOUNDS;
-use crate::law::table::{equivalent, first_yield};
+use crate::law::table::{equivalent, indentation_at_first_yield};
 use crate::law::variables::{Body, Variables, yield_lambda};
 use crate::law::{LawError, LawFile};
 use crate::output::{StepRecord, Summary, SummaryInputs};
@@ -97,7 +97,7 @@ impl LawCurves {
             h,
             friction,
             elastic: equivalent(&case),
-            first_yield: first_yield(&case)?,
+            first_yield: indentation_at_first_yield(&case)?,
             a,
             k_t: parameters.virgin(h).point.k_t,
             lambda: variables.lambda,

@@ -39,8 +39,6 @@ impl ShownCase {
 /// The finished cases of a study.
 #[derive(Clone, Debug, Default)]
 pub struct StudyCases {
-    /// Where they are.
-    pub dir: PathBuf,
     /// The cases.
     pub cases: Vec<ShownCase>,
 }
@@ -59,7 +57,7 @@ impl StudyCases {
             let (case, summary) = (out.load_case()?, Summary::read(&out.summary())?);
             cases.push(ShownCase { id: row.id.clone(), case, summary, directory });
         }
-        Ok(Self { dir: dir.to_owned(), cases })
+        Ok(Self { cases })
     }
 
     /// The cases of the contact of `case`: whatever their depths and paths.

@@ -76,7 +76,7 @@ pub use progress::{PlainProgress, Position, Progress, SilentProgress, detail, in
 pub use recorder::Recorder;
 pub use results::{ResultWriter, Setting};
 pub use run_log::LoggedProgress;
-pub use summary::{FULL_SLIP_RATIO, NormalizedResults, Status, Summary, SummaryInputs};
+pub use summary::{FULL_SLIP_RATIO, NormalizedResults, RunStatus, Summary, SummaryInputs};
 pub use time_by_phase::{OutsideSteps, PhaseTime, TimeByPhase};
 pub use units::Units;
 pub use vtu::{Collection, Field, Grid, Values, write_vtu};

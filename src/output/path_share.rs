@@ -16,9 +16,6 @@ pub struct PathShare {
     share: f64,
 }
 
-/// Shear increments grow as a power of their number, so that the number grows as this power of the
-/// distance.
-const SHEAR_POWER: f64 = 1.0 / (1.0 + SHEAR_GROWTH);
 /// F_T/(mu F_N) is 1 - (c/a)^3 where points within c stick (Cattaneo 1938): where full slip comes
 /// is not known before, how much still sticks is.
 const STICK_POWER: i32 = 3;
@@ -58,7 +55,8 @@ impl PathShare {
             }
             Segment::Release { share } => part(self.start.f_n, record.f_n, share * self.start.f_n),
             Segment::Shear { shear: ShearTarget::Displacement(target), .. } => {
-                part(self.start.delta_t, record.delta_t, target).max(0.0).powf(SHEAR_POWER)
+                // Increments grow as a power of their number: the number, as this power of the way.
+                part(self.start.delta_t, record.delta_t, target).max(0.0).powf(1.0 / (1.0 + SHEAR_GROWTH))
             }
             Segment::Motion { to, .. } => share_of(&to, &self.start, record),
             Segment::Shear { shear: ShearTarget::FullSlip, .. } | Segment::Slip { .. } => {

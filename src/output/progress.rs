@@ -2,7 +2,7 @@
 //! stderr.
 
 use super::report::rounded;
-use super::{Status, StepRecord};
+use super::{RunStatus, StepRecord};
 #[cfg(feature = "bars")]
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal, Write};
@@ -64,8 +64,8 @@ pub fn in_words(seconds: f64) -> String {
 }
 
 /// The last line of a run: of one that is done, that all of its path is behind.
-pub fn last_line(status: Status, steps: usize) -> String {
-    let share = if status == Status::Done { "100.0 %  " } else { "" };
+pub fn last_line(status: RunStatus, steps: usize) -> String {
+    let share = if status == RunStatus::Done { "100.0 %  " } else { "" };
     format!("{share}{status}: {steps} steps")
 }
 

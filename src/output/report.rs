@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Status, Summary};
+use super::{RunStatus, Summary};
 
 impl Summary {
     /// Lines for forces in the user's units and their errors, if there are any, and the beginning
@@ -23,7 +23,7 @@ impl Summary {
         };
         let errors: Vec<String> = there().filter_map(told).collect();
         let errors = if errors.is_empty() { "not estimated".to_owned() } else { errors.join(", ") };
-        let so_far = if self.status == Status::Done { "" } else { "so far: " };
+        let so_far = if self.status == RunStatus::Done { "" } else { "so far: " };
         let mut text = String::new();
         if !values.is_empty() {
             text += &format!("{so_far}{}\nerrors: {errors}\n", values.join("  "));
@@ -97,7 +97,7 @@ pub(super) fn rounded(value: f64, digits: i32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::Status;
+    use crate::output::RunStatus;
 
     #[test]
     fn numbers_are_readable() {
@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn the_brief_report_has_what_there_is() {
-        let mut summary = Summary { status: Status::Done, steps: 7, wall_s: 2.04, ..Summary::default() };
+        let mut summary = Summary { status: RunStatus::Done, steps: 7, wall_s: 2.04, ..Summary::default() };
         assert_eq!(summary.brief(), "done in 2.0 s, 7 steps; ");
         (summary.f_n0, summary.a0) = (Some(150.0), Some(0.2));
         assert_eq!(summary.brief(), "F_N0 150.000  a0 0.200000\nerrors: not estimated\ndone in 2.0 s, 7 steps; ");
@@ -118,14 +118,14 @@ mod tests {
         let expected =
             "F_N0 150.000  F_T_max 30.0000 (limit 29.5000)  a0 0.200000\nerrors: F_N0 +- 1.0 %\ndone in 2.0 s, 7 steps; ";
         assert_eq!(summary.brief(), expected);
-        summary.status = Status::Interrupted;
+        summary.status = RunStatus::Interrupted;
         assert!(summary.brief().starts_with("so far: F_N0 150.000 "));
     }
 
     #[test]
     fn what_is_not_there_is_not_told() {
         let mut summary =
-            Summary { f_n0: Some(72.6), status: Status::Done, device: "CPU (1 thread)".into(), ..Summary::default() };
+            Summary { f_n0: Some(72.6), status: RunStatus::Done, device: "CPU (1 thread)".into(), ..Summary::default() };
         summary.precision = "f64".into();
         let text = summary.report();
         assert!(text.starts_with("F_N0          72.6000       normal force at the greatest indentation\n"), "{text}");

@@ -13,7 +13,7 @@ use super::path_share::PathShare;
 use super::tables::is_panel;
 use super::units::coefficient;
 use super::{
-    Collection, ContactPoint, ErrorEstimate, HistoryWriter, Limits, OutputDirectory, OutputError, Position, Progress, Status,
+    Collection, ContactPoint, ErrorEstimate, HistoryWriter, Limits, OutputDirectory, OutputError, Position, Progress, RunStatus,
     StepRecord, Summary, SummaryInputs, TimeByPhase, Units, detail, last_line, write_contact, write_fields, write_parquet,
 };
 use crate::case::{Case, Fields, PictureFormat};
@@ -282,7 +282,7 @@ impl ResultWriter {
     /// `message`. The summary is written even if a plot fails, whose error is then returned. Of a
     /// run that has ended for good the checkpoint is removed, unless it is done and the checkpoint
     /// is to be kept.
-    pub fn finish(mut self, status: Status, message: Option<&str>) -> Result<Summary, OutputError> {
+    pub fn finish(mut self, status: RunStatus, message: Option<&str>) -> Result<Summary, OutputError> {
         self.history.check_there()?;
         self.progress.finish(&last_line(status, self.ledger.rows.len()));
         self.ledger.messages.extend(message.map(str::to_owned));
@@ -291,16 +291,16 @@ impl ResultWriter {
             true => write_parquet(&self.out.parquet(), &self.ledger.rows),
             false => Ok(()),
         });
-        let mut status = if self.failed { Status::Failed } else { status };
+        let mut status = if self.failed { RunStatus::Failed } else { status };
         if let Err(error) = &plots {
             self.ledger.messages.push(error.to_string());
             // Not done: who goes on from the checkpoint comes here again, and draws them.
-            status = Status::Interrupted;
+            status = RunStatus::Interrupted;
         }
         self.ledger.outside.output += begun.elapsed().as_secs_f64();
         let (wall_s, cpu_s) = self.spent();
         // Of a run that did not get to its end there is nothing to compare.
-        let estimate = self.estimate().filter(|_| status == Status::Done);
+        let estimate = self.estimate().filter(|_| status == RunStatus::Done);
         let mut summary = Summary {
             remeshed: self.ledger.remeshed,
             status,
@@ -317,23 +317,23 @@ impl ResultWriter {
             messages: self.ledger.messages,
             ..Summary::from_history(&self.ledger.rows, &self.inputs).with_errors(estimate)
         };
-        if status == Status::Done && self.keeps_checkpoint && !self.end_is_kept {
+        if status == RunStatus::Done && self.keeps_checkpoint && !self.end_is_kept {
             summary.messages.push("note: the last checkpoint could not be written: --extend is not possible".to_owned());
         }
         let finite = check_summary(&self.out.summary(), &summary);
         if let Err(error) = &finite {
-            summary.status = Status::Failed;
+            summary.status = RunStatus::Failed;
             summary.messages.push(error.to_string());
         }
         summary.write(&self.out.summary())?;
         finite?;
         let stays = match status {
             // Of a result that was no number another device may make one, from the state before.
-            Status::Interrupted | Status::Failed => true,
-            Status::Done => self.keeps_checkpoint && self.end_is_kept,
-            Status::NotConverged | Status::ContactOutgrewMesh => false,
+            RunStatus::Interrupted | RunStatus::Failed => true,
+            RunStatus::Done => self.keeps_checkpoint && self.end_is_kept,
+            RunStatus::NotConverged | RunStatus::ContactOutgrewMesh => false,
         };
-        if status == Status::Done {
+        if status == RunStatus::Done {
             let _ = std::fs::remove_file(self.out.end_checkpoint());
         }
         if !stays {

@@ -18,7 +18,7 @@ pub const FULL_SLIP_RATIO: f64 = 0.997;
 /// How a run ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Status {
+pub enum RunStatus {
     /// To the end of the path.
     Done,
     /// A step failed; what was computed is kept.
@@ -33,14 +33,14 @@ pub enum Status {
     Failed,
 }
 
-impl std::fmt::Display for Status {
+impl std::fmt::Display for RunStatus {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Status::Done => "done",
-            Status::NotConverged => "not converged",
-            Status::ContactOutgrewMesh => "the contact outgrew the mesh",
-            Status::Interrupted => "interrupted",
-            Status::Failed => "failed",
+            RunStatus::Done => "done",
+            RunStatus::NotConverged => "not converged",
+            RunStatus::ContactOutgrewMesh => "the contact outgrew the mesh",
+            RunStatus::Interrupted => "interrupted",
+            RunStatus::Failed => "failed",
         })
     }
 }
@@ -219,7 +219,7 @@ pub struct Summary {
     /// What passed between the host and the device; null where the CPU ran the kernels.
     pub device_traffic: Option<DeviceTraffic>,
     /// How the run ended.
-    pub status: Status,
+    pub status: RunStatus,
     /// Version of the program.
     pub version: String,
     /// Notes and warnings, in the order in which they came.
@@ -503,7 +503,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("summary.json");
         let mut summary = Summary::from_history(&synthetic(1.0, 0.5, 0.0), &INPUTS);
-        summary.status = Status::NotConverged;
+        summary.status = RunStatus::NotConverged;
         summary.device = "cpu".into();
         summary.messages.push("note".into());
         // A number that a hasty reader of decimals gets wrong in its last bit.

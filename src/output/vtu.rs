@@ -229,11 +229,6 @@ impl Collection {
         Ok(collection)
     }
 
-    /// Time and file name, relative to the collection's folder, of each entry.
-    pub fn entries(&self) -> &[(f64, String)] {
-        &self.entries
-    }
-
     /// Adds a file and writes the collection; the file has to lie in the collection's folder.
     pub fn push(&mut self, time: f64, file: &Path) -> Result<(), OutputError> {
         self.entries.push((time, file_name(file)));
@@ -343,13 +338,13 @@ mod tests {
         let whole = fs::read_to_string(&path).unwrap();
         let files = || (1..=3).map(|step| (0.1 * step as f64, folder.path().join(format!("fields/step_{step:04}.vtu"))));
         let mut resumed = Collection::resume(&path, files().take(2)).unwrap();
-        assert_eq!(resumed.entries(), [(0.1, "step_0001.vtu".to_owned()), (0.2, "step_0002.vtu".to_owned())]);
+        assert_eq!(resumed.entries, [(0.1, "step_0001.vtu".to_owned()), (0.2, "step_0002.vtu".to_owned())]);
         assert_eq!(fs::read_to_string(&path).unwrap().matches("<DataSet ").count(), 2);
         let (time, file) = files().next_back().unwrap();
         resumed.push(time, &file).unwrap();
         assert_eq!((&resumed, fs::read_to_string(&path).unwrap()), (&collection, whole));
         // Nothing was written yet, whatever stands there.
-        assert!(Collection::resume(&path, files().take(0)).unwrap().entries().is_empty());
+        assert!(Collection::resume(&path, files().take(0)).unwrap().entries.is_empty());
         assert!(!path.exists());
         assert!(Collection::resume(&path, files().take(0)).is_ok());
     }

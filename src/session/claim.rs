@@ -8,7 +8,7 @@ use std::time::{Duration, SystemTime};
 use super::error::is_absent;
 use super::{Earlier, SessionError, prepare};
 use crate::case::Case;
-use crate::output::{DirectoryLock, OutputDirectory, Status, Summary, case_difference, read_history};
+use crate::output::{DirectoryLock, OutputDirectory, RunStatus, Summary, case_difference, read_history};
 
 /// A directory that is taken. Given up, folders that were made for it and in which nothing was
 /// written go too.
@@ -69,9 +69,9 @@ fn found(dir: &Path, case: &Case) -> Option<String> {
     if summary.is_none() && steps == 0 && !out.checkpoint().exists() {
         return None;
     }
-    let how = match summary.map_or(Status::Interrupted, |summary| summary.status) {
-        Status::Done => "a run that is done".to_owned(),
-        Status::Interrupted => "an unfinished run".to_owned(),
+    let how = match summary.map_or(RunStatus::Interrupted, |summary| summary.status) {
+        RunStatus::Done => "a run that is done".to_owned(),
+        RunStatus::Interrupted => "an unfinished run".to_owned(),
         status => format!("a run that ended as {:?}", status.to_string()),
     };
     let whose = match case_difference(&there, &case.to_toml()) {

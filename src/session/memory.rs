@@ -4,7 +4,7 @@ use super::Canceller;
 use crate::case::Case;
 use crate::compute::traffic::Account;
 use crate::output::{
-    Clock, ErrorEstimate, Limits, OutsideSteps, PathShare, Position, Progress, Setting, Status, StepRecord, Summary,
+    Clock, ErrorEstimate, Limits, OutsideSteps, PathShare, Position, Progress, RunStatus, Setting, StepRecord, Summary,
     SummaryInputs, TimeByPhase, Units, detail, last_line,
 };
 use crate::simulation::drive::{Observer, StepView};
@@ -83,10 +83,10 @@ impl Memory {
     }
 
     /// The summary of the run, as it would be written.
-    pub fn finish(mut self, rows: &[StepRecord], status: Status, message: Option<&str>) -> Summary {
+    pub fn finish(mut self, rows: &[StepRecord], status: RunStatus, message: Option<&str>) -> Summary {
         self.progress.finish(&last_line(status, rows.len()));
         let wall_s = self.clock.wall_seconds();
-        let limits = self.limits.filter(|_| status == Status::Done);
+        let limits = self.limits.filter(|_| status == RunStatus::Done);
         let estimate = limits.map(|limits| ErrorEstimate::new(rows, &self.inputs.oblique, &limits));
         Summary {
             status,

@@ -28,7 +28,7 @@ pub use error::SessionError;
 pub use simulation::{Simulation, StepFields, Steps};
 
 pub use crate::compute::select::{DeviceChoice, PrecisionChoice};
-use crate::output::{Status, Summary};
+use crate::output::{RunStatus, Summary};
 
 /// What to do with an earlier result in the directory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -96,7 +96,7 @@ impl Canceller {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// To the end of the path, or why not.
-    pub status: Status,
+    pub status: RunStatus,
     /// The reason, if it did not get to the end of the path.
     pub message: Option<String>,
     /// The run in some numbers, in the user's units.
@@ -108,6 +108,6 @@ pub struct Outcome {
 impl Outcome {
     /// Whether the whole path was followed.
     pub fn is_done(&self) -> bool {
-        self.status == Status::Done
+        self.status == RunStatus::Done
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::SessionError;
 use crate::case::Case;
-use crate::output::{Checkpoint, OutputDirectory, OutputError, Status, Summary, case_difference};
+use crate::output::{Checkpoint, OutputDirectory, OutputError, RunStatus, Summary, case_difference};
 
 /// What `--resume` finds of an earlier run.
 #[derive(Debug)]
@@ -37,8 +37,8 @@ pub fn prior_run(dir: &Path, case: &Case, extends: bool) -> Result<PriorRun, Ses
     // Anything that is not a result is left to those who prepare the directory.
     let Some(found) = out.read_case() else { return nothing() };
     let ended = |summary: &Summary| match summary.status {
-        Status::Done | Status::NotConverged | Status::ContactOutgrewMesh => true,
-        Status::Interrupted | Status::Failed => false,
+        RunStatus::Done | RunStatus::NotConverged | RunStatus::ContactOutgrewMesh => true,
+        RunStatus::Interrupted | RunStatus::Failed => false,
     };
     let path = out.checkpoint();
     // A summary that cannot be read counts as missing.
@@ -84,7 +84,7 @@ impl From<OutputError> for NotExtendable {
 
 /// The end of a run with another case: where `case` goes on from it.
 fn extendable(out: &OutputDirectory, case: &Case, summary: &Summary) -> Result<PriorRun, NotExtendable> {
-    let is_done = summary.status == Status::Done;
+    let is_done = summary.status == RunStatus::Done;
     // An extension that did not converge leaves the end of the path before it.
     let path = if is_done { out.checkpoint() } else { out.end_checkpoint() };
     let Some(checkpoint) = Checkpoint::read(&path)? else {

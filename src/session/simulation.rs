@@ -18,7 +18,7 @@ use crate::compute::{ComputeError, Description};
 use crate::memory;
 use crate::output::space::{Space, stresses_in_space};
 use crate::output::{
-    Checkpoint, Clock, ContactPoint, OutputDirectory, Progress, ResultWriter, Setting, SilentProgress, Status, StepRecord,
+    Checkpoint, Clock, ContactPoint, OutputDirectory, Progress, ResultWriter, RunStatus, Setting, SilentProgress, StepRecord,
     Summary, Units, mises, read_history,
 };
 use crate::simulation::SimulationError;
@@ -312,10 +312,10 @@ impl Simulation {
     fn ended_before(&mut self, summary: Summary) -> Result<RunStage, SessionError> {
         if let Some(out) = &self.options.out {
             self.history = read_history(&OutputDirectory::existing(out).history())?;
-            let is_done = summary.status == Status::Done;
+            let is_done = summary.status == RunStatus::Done;
             tidy(out, is_done && self.case.output.keep_checkpoint, !is_done);
         }
-        let message = summary.messages.last().filter(|_| summary.status != Status::Done).cloned();
+        let message = summary.messages.last().filter(|_| summary.status != RunStatus::Done).cloned();
         Ok(RunStage::Ended(Box::new(Outcome { status: summary.status, message, summary, ended_before: true }), None))
     }
 
@@ -507,7 +507,7 @@ impl Simulation {
         let message = format!(
             "interrupted{by} before the extension began; the results are as they were. To extend them, run the same command again"
         );
-        let outcome = Outcome { status: Status::Interrupted, message: Some(message), summary, ended_before: false };
+        let outcome = Outcome { status: RunStatus::Interrupted, message: Some(message), summary, ended_before: false };
         Ok(RunStage::Ended(Box::new(outcome), None))
     }
 
@@ -516,20 +516,20 @@ impl Simulation {
         let steps = self.history.len();
         let broke_off = |what: String| SessionError::BrokeOff { steps, what, dir: self.options.out.clone() };
         let (status, message) = match followed {
-            Ok(Ending::Done) => (Status::Done, None),
-            Ok(Ending::NotConverged(reason)) => (Status::NotConverged, Some(format!("no convergence: {reason}"))),
+            Ok(Ending::Done) => (RunStatus::Done, None),
+            Ok(Ending::NotConverged(reason)) => (RunStatus::NotConverged, Some(format!("no convergence: {reason}"))),
             Ok(Ending::Outgrown(outgrowth)) => {
-                (Status::ContactOutgrewMesh, Some(format!("{outgrowth}; there is no larger mesh")))
+                (RunStatus::ContactOutgrewMesh, Some(format!("{outgrowth}; there is no larger mesh")))
             }
             Ok(Ending::Interrupted) => {
                 let by = self.options.canceller.by;
                 let reason = format!("interrupted{by} after step {steps}; to go on, run the same command with --resume");
-                (Status::Interrupted, Some(reason))
+                (RunStatus::Interrupted, Some(reason))
             }
             Err(error) => {
                 let what = error.to_string();
                 let not_finite = matches!(error, SimulationError::NotFinite { .. });
-                let status = if not_finite { Status::Failed } else { Status::Interrupted };
+                let status = if not_finite { RunStatus::Failed } else { RunStatus::Interrupted };
                 if let Sink::Files(results) = sink {
                     // The disk may be full: what can still be written is written, and the first
                     // error is the one to tell.

@@ -64,7 +64,7 @@ fn files_do_not_show_that_it_was_stepped_or_dropped_on_the_way() {
     assert_eq!(into(&stepped, Earlier::Keep).steps().filter_map(Result::ok).count(), whole(&case).len());
     assert_eq!(into(&dropped, Earlier::Keep).steps().take(4).filter_map(Result::ok).count(), 4);
     let left = OutputDirectory::existing(&dropped);
-    assert_eq!(Summary::read(&left.summary()).expect("a summary").status, Status::Interrupted);
+    assert_eq!(Summary::read(&left.summary()).expect("a summary").status, RunStatus::Interrupted);
     assert!(left.checkpoint().exists());
     let mut resumed = into(&dropped, Earlier::Resume);
     assert_eq!(resumed.steps().count(), whole(&case).len() - 4);
@@ -97,7 +97,7 @@ fn files_do_not_show_that_it_was_stepped_or_dropped_on_the_way() {
     let mut again = into(&at_once, Earlier::Resume);
     assert!(again.outcome().expect("an end").ended_before && again.step().expect("no step").is_none());
     assert_eq!(again.history(), read_history(&OutputDirectory::existing(&at_once).history()).expect("a history"));
-    assert_eq!(again.run().expect("nothing to do").status, Status::Done);
+    assert_eq!(again.run().expect("nothing to do").status, RunStatus::Done);
 }
 
 #[test]
@@ -146,7 +146,7 @@ fn a_run_is_cancelled_from_another_thread() {
     canceller.cancel();
     let (outcome, simulation) = run.join().expect("no panic");
     let outcome = outcome.expect("an end");
-    assert_eq!(outcome.status, Status::Interrupted);
+    assert_eq!(outcome.status, RunStatus::Interrupted);
     assert!(outcome.message.is_some_and(|message| message.starts_with("interrupted after step ")));
     assert!(simulation.history().len() < whole(&case()).len());
 }
@@ -173,7 +173,7 @@ fn a_step_that_does_not_converge_is_an_outcome() {
     (case.solver.max_iterations, case.solver.max_cutbacks) = (1, 0);
     let mut simulation = Simulation::with(&case, on_cpu()).expect("a simulation");
     let outcome = simulation.run().expect("an end");
-    assert_eq!((outcome.status, simulation.history().len()), (Status::NotConverged, 0));
+    assert_eq!((outcome.status, simulation.history().len()), (RunStatus::NotConverged, 0));
     assert!(outcome.message.is_some_and(|message| message.starts_with("no convergence: step 1 of segment 0")));
 }
 

@@ -61,7 +61,7 @@ pub struct Resolution {
 }
 
 /// Increments of a shear grow as i^1.3: its resolution is needed at the start, where sticking
-/// points begin to slip.
+/// points begin to slip. Half and twice of it: `benches/constants`.
 pub const SHEAR_GROWTH: f64 = 1.3;
 /// The growing increments end at this many elastic slip displacements (full slip was seen at 3.3 of
 /// them in fully plastic contacts). Half and twice of it: `benches/constants`.
@@ -71,7 +71,8 @@ const SHEAR_RANGE: f64 = 4.5;
 const FRICTION_LIMIT: f64 = 0.3;
 /// First steps of a press, which grow; they are worth half as many of the others.
 const GROWING_STEPS: usize = 4;
-/// Steps of an unloading over its estimated elastic recovery.
+/// Steps of an unloading over its estimated elastic recovery. Half and twice of it:
+/// `benches/constants`.
 pub const RELEASE_STEPS: f64 = 12.0;
 /// No increment of a shear is longer than this share of the contact radius; where everything slips
 /// those of a shear of given length go on growing up to it. What comes into contact or leaves it

@@ -199,7 +199,7 @@ impl StudyDirectory {
 
 /// What is to become of an earlier study in the folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Earlier {
+pub enum EarlierStudy {
     /// It is gone on with.
     Keep,
     /// It is replaced.

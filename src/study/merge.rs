@@ -6,7 +6,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::StudyError;
-use super::directory::{Earlier, StudyDirectory};
+use super::directory::{EarlierStudy, StudyDirectory};
 use super::file::Study;
 use super::place::place;
 use super::row::{Row, RowStatus, write_table};
@@ -55,7 +55,7 @@ pub fn merge(sources: &[PathBuf], out: &Path) -> Result<Merged, StudyError> {
         return Err(refused(out, "there is nothing to merge. Give directories of `asperity study --out`".to_owned()));
     };
     let target = StudyDirectory::new(out);
-    let PreparedStudy { study, mut rows, lock: _lock } = begin(&target, first, Earlier::Keep, |_, _| Ok(()))?;
+    let PreparedStudy { study, mut rows, lock: _lock } = begin(&target, first, EarlierStudy::Keep, |_, _| Ok(()))?;
     let mut merged = Merged { report: Report::default(), copied: 0, missing: Vec::new(), busy: Vec::new() };
     for (directory, source) in studies.iter().filter(|(directory, _)| !is_same(directory.root(), out)) {
         for (number, (case, there)) in study.cases.iter().zip(&source.cases).enumerate() {

@@ -33,7 +33,7 @@ mod sweep;
 mod tests;
 
 pub use device::backends;
-pub use directory::{Earlier, StudyDirectory};
+pub use directory::{EarlierStudy, StudyDirectory};
 pub use error::StudyError;
 pub use file::{Study, StudyCase};
 pub use merge::{Merged, merge};

@@ -7,12 +7,12 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::StudyError;
-use super::directory::{Earlier, StudyDirectory};
+use super::directory::{EarlierStudy, StudyDirectory};
 use super::file::Study;
 use super::id::{case_id, directory_of, is_case_id};
 use super::row::cell;
 use crate::law::study_table::StudyTable;
-use crate::output::{DirectoryLock, OutputDirectory, OutputError, Status, Summary, TaskLock, read_history};
+use crate::output::{DirectoryLock, OutputDirectory, OutputError, RunStatus, Summary, TaskLock, read_history};
 
 /// A study and the directories of its cases.
 #[derive(Debug)]
@@ -36,12 +36,12 @@ impl StudyDirectory {
     /// [`StudyError::NotADirectory`], [`StudyError::NotAStudy`], [`StudyError::OtherStudy`],
     /// [`StudyError::Earlier`], [`StudyError::Directory`], [`StudyError::Output`] where somebody
     /// else computes one of the cases that are to be replaced.
-    pub fn prepare(&self, study: &Study, earlier: Earlier) -> Result<Placed, StudyError> {
+    pub fn prepare(&self, study: &Study, earlier: EarlierStudy) -> Result<Placed, StudyError> {
         self.recognise()?;
         match earlier {
-            Earlier::Keep => {}
-            Earlier::Replace => self.clear()?,
-            Earlier::Refuse => {
+            EarlierStudy::Keep => {}
+            EarlierStudy::Replace => self.clear()?,
+            EarlierStudy::Refuse => {
                 let ids = numbered(self)?;
                 let computed: Vec<Computed> = ids.iter().filter_map(|id| computed(&self.case(id))).collect();
                 if !computed.is_empty() {
@@ -104,9 +104,9 @@ pub(super) enum Computed {
 /// What is computed of the case in a directory; `None` if it is nothing.
 pub(super) fn computed(out: &OutputDirectory) -> Option<Computed> {
     match Summary::read(&out.summary()).map(|summary| summary.status) {
-        Ok(Status::Done) => Some(Computed::Done),
-        Ok(Status::NotConverged | Status::ContactOutgrewMesh | Status::Failed) => Some(Computed::Ended),
-        Ok(Status::Interrupted) => Some(Computed::Begun),
+        Ok(RunStatus::Done) => Some(Computed::Done),
+        Ok(RunStatus::NotConverged | RunStatus::ContactOutgrewMesh | RunStatus::Failed) => Some(Computed::Ended),
+        Ok(RunStatus::Interrupted) => Some(Computed::Begun),
         Err(_) => {
             let steps = || read_history(&out.history()).map_or(0, |rows| rows.len());
             (out.checkpoint().exists() || steps() > 0).then_some(Computed::Begun)

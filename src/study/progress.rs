@@ -202,7 +202,7 @@ impl Progress for CaseProgress {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::{Status, Summary};
+    use crate::output::{RunStatus, Summary};
 
     /// A writer that others can look into.
     #[derive(Clone, Default)]
@@ -217,7 +217,7 @@ mod tests {
         }
     }
 
-    fn row(status: Status, message: &str) -> Row {
+    fn row(status: RunStatus, message: &str) -> Row {
         Row::of(Summary { status, messages: vec![message.to_owned()], ..Summary::default() })
     }
 
@@ -230,8 +230,8 @@ mod tests {
         progress.started();
         progress.message("c0001", "note: once");
         progress.message("c0002", "note: once");
-        progress.finished(0, "c0001", &row(Status::Done, "note: once"));
-        progress.finished(1, "c0002", &row(Status::NotConverged, "no convergence:\n step 3"));
+        progress.finished(0, "c0001", &row(RunStatus::Done, "note: once"));
+        progress.finished(1, "c0002", &row(RunStatus::NotConverged, "no convergence:\n step 3"));
         progress.end();
         let text = String::from_utf8(text.0.lock().unwrap().clone()).unwrap();
         let lines: Vec<&str> = text.lines().collect();
@@ -248,7 +248,7 @@ mod tests {
         progress.begin("", &[1.0, 9.0, 100.0], &[0, 1], 1, 0);
         progress.advanced(1, 0.5);
         assert!((progress.state().share() - 0.45).abs() < 1e-12);
-        progress.finished(0, "c0001", &row(Status::Done, ""));
+        progress.finished(0, "c0001", &row(RunStatus::Done, ""));
         assert!((progress.state().share() - 0.55).abs() < 1e-12);
     }
 }

@@ -10,7 +10,7 @@ use super::id::directory_of;
 use crate::case::keys::takes_decimals;
 use crate::case::{Case, Friction};
 use crate::law::variables::{Body, Variables};
-use crate::output::{OutputDirectory, Status, Summary, decimal, read_history, write_atomically};
+use crate::output::{OutputDirectory, RunStatus, Summary, decimal, read_history, write_atomically};
 
 /// A column of text by its name, and how it is read.
 type TextColumn = (&'static str, fn(&StudyCase, &Row) -> String);
@@ -151,11 +151,11 @@ impl Row {
     /// A case that ended with this summary.
     pub fn of(summary: Summary) -> Self {
         let status = match summary.status {
-            Status::Done => RowStatus::Done,
-            Status::NotConverged => RowStatus::NotConverged,
-            Status::ContactOutgrewMesh => RowStatus::Outgrown,
-            Status::Interrupted => RowStatus::Pending,
-            Status::Failed => RowStatus::Failed,
+            RunStatus::Done => RowStatus::Done,
+            RunStatus::NotConverged => RowStatus::NotConverged,
+            RunStatus::ContactOutgrewMesh => RowStatus::Outgrown,
+            RunStatus::Interrupted => RowStatus::Pending,
+            RunStatus::Failed => RowStatus::Failed,
         };
         let told = summary.messages.iter().rev().find(|message| !message.starts_with("note: "));
         let reason = told.filter(|_| status != RowStatus::Done).map(|text| one_line(text)).unwrap_or_default();
@@ -168,7 +168,7 @@ impl Row {
         let same = |found: Case| found.identity() == case.identity();
         let this = out.holds_result() && out.load_case().is_ok_and(same);
         match this.then(|| Summary::read(&out.summary())) {
-            Some(Ok(summary)) if summary.status != Status::Interrupted => {
+            Some(Ok(summary)) if summary.status != RunStatus::Interrupted => {
                 let found = read_history(&out.history()).map_or(0, |rows| rows.len());
                 if found == summary.steps {
                     return Self::of(summary);

@@ -10,7 +10,7 @@ use rayon::ThreadPool;
 
 use super::StudyError;
 use super::device::on_device;
-use super::directory::{Earlier, StudyDirectory};
+use super::directory::{EarlierStudy, StudyDirectory};
 use super::file::Study;
 use super::id::directory_of;
 use super::place::{Placed, alone, computed, earlier_results, join};
@@ -203,9 +203,9 @@ fn begin_share(
     let earlier = match (options.resume || options.shard.is_some(), options.force) {
         // Shares run into one directory, side by side or one after the other: what the others left
         // stays.
-        (true, _) => Earlier::Keep,
-        (false, true) => Earlier::Replace,
-        (false, false) => Earlier::Refuse,
+        (true, _) => EarlierStudy::Keep,
+        (false, true) => EarlierStudy::Replace,
+        (false, false) => EarlierStudy::Refuse,
     };
     let begun = begin(directory, study, earlier, |study, rows| {
         let there = |&case: &usize| Some(directory.case(&study.cases[case].id)).filter(OutputDirectory::holds_result);
@@ -264,7 +264,7 @@ pub(super) struct PreparedStudy {
 pub(super) fn begin(
     directory: &StudyDirectory,
     study: &Study,
-    earlier: Earlier,
+    earlier: EarlierStudy,
     adjust: impl FnOnce(&Study, &mut Vec<Row>) -> Result<(), StudyError>,
 ) -> Result<PreparedStudy, StudyError> {
     let mut made = None;
@@ -277,7 +277,7 @@ pub(super) fn begin(
         // A folder of the user's own is refused before anything is written to it.
         directory.recognise()?;
         let _alone = alone(directory)?;
-        let lock = join(directory, study, earlier != Earlier::Keep)?;
+        let lock = join(directory, study, earlier != EarlierStudy::Keep)?;
         let Placed { study, strangers, begun } = directory.prepare(study, earlier)?;
         let mut rows = read_rows(&study, directory);
         adjust(&study, &mut rows)?;
@@ -307,7 +307,7 @@ pub(super) fn begin(
 /// # Errors
 /// As [`run`], before anything is computed.
 pub fn prepare(study: &Study, dir: &Path) -> Result<(), StudyError> {
-    begin(&StudyDirectory::new(dir), study, Earlier::Keep, |_, _| Ok(())).map(drop)
+    begin(&StudyDirectory::new(dir), study, EarlierStudy::Keep, |_, _| Ok(())).map(drop)
 }
 
 impl Report {

@@ -12,7 +12,7 @@ use super::progress::{CaseProgress, StudyProgress};
 use super::row::{Row, RowStatus};
 use crate::compute::Description;
 use crate::output::{
-    Checkpoint, Clock, DirectoryLock, OutputDirectory, OutputError, ResultWriter, Setting, Status, Summary, SummaryInputs,
+    Checkpoint, Clock, DirectoryLock, OutputDirectory, OutputError, ResultWriter, RunStatus, Setting, Summary, SummaryInputs,
     TaskLock, read_history,
 };
 use crate::simulation::SimulationError;
@@ -160,15 +160,15 @@ impl Simulator<'_> {
             results.scouted(companion, scout_took);
         }
         if stopped {
-            return Ok(results.finish(Status::Interrupted, Some("interrupted after step 0"))?);
+            return Ok(results.finish(RunStatus::Interrupted, Some("interrupted after step 0"))?);
         }
         let followed = follow(problem, checkpoint.as_ref().map(Checkpoint::snapshot), seat, &mut results)?;
         results.computed_on(followed.computed_on);
         let (status, message) = match followed.ending {
-            Ending::Done => (Status::Done, None),
-            Ending::NotConverged(reason) => (Status::NotConverged, Some(format!("no convergence: {reason}"))),
-            Ending::Outgrown(outgrowth) => (Status::ContactOutgrewMesh, Some(format!("{outgrowth}; there is no larger mesh"))),
-            Ending::Interrupted => (Status::Interrupted, Some(format!("interrupted after step {}", results.steps()))),
+            Ending::Done => (RunStatus::Done, None),
+            Ending::NotConverged(reason) => (RunStatus::NotConverged, Some(format!("no convergence: {reason}"))),
+            Ending::Outgrown(outgrowth) => (RunStatus::ContactOutgrewMesh, Some(format!("{outgrowth}; there is no larger mesh"))),
+            Ending::Interrupted => (RunStatus::Interrupted, Some(format!("interrupted after step {}", results.steps()))),
         };
         Ok(results.finish(status, message.as_deref())?)
     }
@@ -182,12 +182,12 @@ impl Simulator<'_> {
         if !ours || !out.holds_result() || out.refuse_foreign().is_err() {
             // Somebody else computes it, its directory was removed, or a file of the user's has the
             // name of a result's: nothing is written there.
-            let status = if ours { Status::Failed } else { Status::Interrupted };
+            let status = if ours { RunStatus::Failed } else { RunStatus::Interrupted };
             return Summary { status, messages: vec![reason.to_owned()], ..Summary::default() };
         }
         let history = read_history(&out.history()).unwrap_or_default();
         let summary = Summary {
-            status: Status::Failed,
+            status: RunStatus::Failed,
             messages: vec![reason.to_owned()],
             ..Summary::from_history(&history, &SummaryInputs::of(case))
         };

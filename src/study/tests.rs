@@ -5,12 +5,12 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use super::batch::{Guest, share};
-use super::directory::{Earlier, StudyDirectory};
+use super::directory::{EarlierStudy, StudyDirectory};
 use super::file::Study;
 use super::row::{Row, RowStatus, write_table};
 use crate::compute::cpu::Cpu;
 use crate::compute::{About, Answer, Call, CaseFields, CaseModel, Compute, ComputeError};
-use crate::output::{OutputDirectory, Status, Summary};
+use crate::output::{OutputDirectory, RunStatus, Summary};
 use crate::simulation::drive::{Drive, Ending, Observer, StepView};
 use crate::simulation::error::ObserverError;
 use crate::simulation::problem::Problem;
@@ -282,7 +282,7 @@ fn a_row_is_the_summary_of_the_very_case() {
     let (mine, other) = (&study.cases[0].case, &study.cases[1].case);
     let out = OutputDirectory::create(directory.case("c0001").root()).expect("a directory");
     assert_eq!(Row::read(mine, &out), Row::pending());
-    let mut summary = Summary { status: Status::Done, f_n0: Some(5.0), a0: Some(0.2), h0: Some(0.01), ..Summary::default() };
+    let mut summary = Summary { status: RunStatus::Done, f_n0: Some(5.0), a0: Some(0.2), h0: Some(0.01), ..Summary::default() };
     summary.messages.push("note: a note".to_owned());
     out.write_case(&mine.to_toml()).expect("a case");
     assert_eq!(Row::read(mine, &out), Row::pending());
@@ -290,10 +290,10 @@ fn a_row_is_the_summary_of_the_very_case() {
     assert_eq!(Row::read(mine, &out), Row { status: RowStatus::Done, reason: String::new(), summary: Some(summary.clone()) });
     assert_eq!(Row::read(other, &out), Row::pending());
     for (status, expected) in [
-        (Status::NotConverged, RowStatus::NotConverged),
-        (Status::ContactOutgrewMesh, RowStatus::Outgrown),
-        (Status::Interrupted, RowStatus::Pending),
-        (Status::Failed, RowStatus::Failed),
+        (RunStatus::NotConverged, RowStatus::NotConverged),
+        (RunStatus::ContactOutgrewMesh, RowStatus::Outgrown),
+        (RunStatus::Interrupted, RowStatus::Pending),
+        (RunStatus::Failed, RowStatus::Failed),
     ] {
         let messages = vec!["note: before".to_owned(), "why\nit ended".to_owned(), "note: after".to_owned()];
         let row = Row::of(Summary { status, messages, ..summary.clone() });
@@ -308,7 +308,7 @@ fn the_table_has_the_promised_columns_and_normalised_variables() {
     let directory = StudyDirectory::new(scratch.path());
     let (f_n0, a0, h0) = (430.0, 0.2, 0.01);
     let summary = Summary {
-        status: Status::Done,
+        status: RunStatus::Done,
         f_n0: Some(f_n0),
         a0: Some(a0),
         h0: Some(h0),
@@ -349,13 +349,13 @@ fn a_directory_is_kept_only_for_the_very_study_and_never_taken_from_the_user() {
     let directory = StudyDirectory::new(scratch.path().join("a/b"));
     let study = study();
     std::fs::create_dir_all(directory.root()).expect("a directory");
-    directory.prepare(&study, Earlier::Refuse).expect("a new directory");
-    directory.prepare(&study, Earlier::Keep).expect("an empty directory");
+    directory.prepare(&study, EarlierStudy::Refuse).expect("a new directory");
+    directory.prepare(&study, EarlierStudy::Keep).expect("an empty directory");
     write_table(&directory.table(), &study, &vec![Row::pending(); 4]).expect("a table");
-    directory.prepare(&study, Earlier::Keep).expect("killed early");
+    directory.prepare(&study, EarlierStudy::Keep).expect("killed early");
     directory.write_study(&study).expect("a copy");
     let spaced = Study::parse(&format!("# the same\n{STUDY}"), "study.toml").expect("a study");
-    directory.prepare(&spaced, Earlier::Keep).expect("the same study");
+    directory.prepare(&spaced, EarlierStudy::Keep).expect("the same study");
     // Results of a case that another study does not have: it is refused, whatever it is that
     // differs.
     let first = OutputDirectory::create(directory.case("c0001").root()).expect("a directory");
@@ -372,7 +372,7 @@ fn a_directory_is_kept_only_for_the_very_study_and_never_taken_from_the_user() {
         ("poissons_ratio = 0.3", "poissons_ratio = 0.2", "its base gives other cases"),
     ] {
         let other = Study::parse(&STUDY.replace(from, to), "study.toml").expect("a study");
-        let error = directory.prepare(&other, Earlier::Keep).expect_err("another study").to_string();
+        let error = directory.prepare(&other, EarlierStudy::Keep).expect_err("another study").to_string();
         assert!(error.contains("holds another study") && error.contains("nothing was changed"), "{error}");
         assert!(error.contains(difference), "{error}");
     }
@@ -381,7 +381,7 @@ fn a_directory_is_kept_only_for_the_very_study_and_never_taken_from_the_user() {
     let grown = Study::parse(&grown, "study.toml").expect("a study");
     let second = OutputDirectory::create(directory.case("c0002").root()).expect("a directory");
     second.write_case(&study.cases[1].case.to_toml()).expect("a case");
-    let placed = directory.prepare(&grown, Earlier::Keep).expect("a study that has grown");
+    let placed = directory.prepare(&grown, EarlierStudy::Keep).expect("a study that has grown");
     let ids: Vec<&str> = placed.study.cases.iter().map(|case| case.id.as_str()).collect();
     assert_eq!((ids, placed.strangers, placed.begun), (vec!["c0005", "c0006", "c0003", "c0001"], vec!["c0002".to_owned()], 1));
     // A case of ours, with a file of the user's beside it, and a directory of the user's.
@@ -390,11 +390,11 @@ fn a_directory_is_kept_only_for_the_very_study_and_never_taken_from_the_user() {
     std::fs::write(directory.root().join("notes.txt"), "mine").expect("a file");
     std::fs::create_dir_all(directory.case("c0004").root()).expect("a directory");
     std::fs::write(directory.case("c0004").root().join("notes.txt"), "mine").expect("a file");
-    directory.prepare(&study, Earlier::Replace).expect("replaced");
+    directory.prepare(&study, EarlierStudy::Replace).expect("replaced");
     assert!(!directory.holds_study() && !out.root().exists());
     assert!(directory.root().join("notes.txt").exists() && directory.case("c0004").root().join("notes.txt").exists());
-    let error = directory.prepare(&study, Earlier::Refuse).expect_err("not a study").to_string();
+    let error = directory.prepare(&study, EarlierStudy::Refuse).expect_err("not a study").to_string();
     assert!(error.contains("is not an Asperity study") && error.contains("nothing was changed"), "{error}");
     let file = StudyDirectory::new(directory.root().join("notes.txt"));
-    assert!(file.prepare(&study, Earlier::Keep).expect_err("a file").to_string().contains("is not a directory"));
+    assert!(file.prepare(&study, EarlierStudy::Keep).expect_err("a file").to_string().contains("is not a directory"));
 }

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
 use asperity::output::OutputDirectory;
-use asperity::study::{Earlier, Study, StudyDirectory};
+use asperity::study::{EarlierStudy, Study, StudyDirectory};
 
 use super::common::{files, program, stderr, stdout};
 use tempfile::TempDir;
@@ -324,7 +324,7 @@ fn drafts_that_come_and_go_while_a_directory_is_cleared_are_no_fault() {
         });
         let clear = || {
             for _ in 0..1000 {
-                directory.prepare(&study, Earlier::Replace).map_err(|error| error.to_string())?;
+                directory.prepare(&study, EarlierStudy::Replace).map_err(|error| error.to_string())?;
                 out.clear().map_err(|error| error.to_string())?;
             }
             Ok::<(), String>(())
@@ -338,7 +338,7 @@ fn drafts_that_come_and_go_while_a_directory_is_cleared_are_no_fault() {
     for path in &young {
         fs::File::options().write(true).open(path).and_then(|file| file.set_modified(hour_ago)).expect("a time");
     }
-    directory.prepare(&study, Earlier::Replace).expect("cleared");
+    directory.prepare(&study, EarlierStudy::Replace).expect("cleared");
     out.clear().expect("cleared");
     assert!(!young.iter().any(|path| path.exists()));
 }

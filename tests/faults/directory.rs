@@ -11,7 +11,7 @@ use asperity::internals::compute::Compute;
 use asperity::internals::compute::cpu::Cpu;
 use asperity::internals::simulation::drive::Drive;
 use asperity::internals::simulation::problem::Problem;
-use asperity::output::{Clock, OutputDirectory, ResultWriter, Setting, SilentProgress, Status, read_history};
+use asperity::output::{Clock, OutputDirectory, ResultWriter, RunStatus, Setting, SilentProgress, read_history};
 use rustix::process::{Pid, Signal, kill_process};
 
 use super::common::{Scratch, difference, files, program, stderr};
@@ -182,8 +182,8 @@ fn a_result_that_is_no_number_is_a_failure_with_its_step_and_never_done() {
     let error = Drive::new(&problem, &mut backend, 0, newton).run(&mut results).expect_err("no number").to_string();
     assert!(error.contains("step 1: F_N is inf"), "{error}");
     // Whatever the caller makes of it.
-    let summary = results.finish(Status::Done, Some(&error)).expect("a summary");
-    assert_eq!((summary.status, summary.steps), (Status::Failed, 0));
+    let summary = results.finish(RunStatus::Done, Some(&error)).expect("a summary");
+    assert_eq!((summary.status, summary.steps), (RunStatus::Failed, 0));
     assert!(fs::read_to_string(out.summary()).expect("a summary").contains("\"status\": \"failed\""));
 }
 

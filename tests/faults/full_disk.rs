@@ -4,7 +4,7 @@
 use std::fs;
 use std::process::Command;
 
-use asperity::output::{Status, Summary};
+use asperity::output::{RunStatus, Summary};
 
 use super::common::{difference, files, stderr};
 use super::program::{scratch, skipped, whole};
@@ -52,7 +52,7 @@ fn a_disk_that_is_full_at_any_place_is_told_and_the_run_goes_on_with_room() {
             assert!(message.lines().filter(|line| line.starts_with("error: ")).count() == 1, "{message}");
             assert!(code == Some(3) || code == Some(2), "{code:?} {message}");
             let summary = Summary::read(&out.join("summary.json")).ok();
-            assert!(summary.is_none_or(|summary| summary.status != Status::Done), "done, but {message}");
+            assert!(summary.is_none_or(|summary| summary.status != RunStatus::Done), "done, but {message}");
             while_drawing += usize::from(message.contains("plots/"));
         }
         disk.widen();
@@ -70,7 +70,7 @@ fn a_disk_that_is_full_at_any_place_is_told_and_the_run_goes_on_with_room() {
         if code != Some(0) {
             let told = Summary::read(&out.join("summary.json")).expect("a summary");
             // A disk that was too full for a checkpoint is no difference in what was computed.
-            assert_eq!(told.status, Status::Done);
+            assert_eq!(told.status, RunStatus::Done);
         }
         assert_eq!(difference(&out, whole()), None, "after {code:?} {message}");
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use asperity::output::{Status, Summary, read_history};
+use asperity::output::{RunStatus, Summary, read_history};
 use rustix::process::{Pid, Signal, kill_process};
 
 use super::common::{Scratch, difference, files, program, stderr};
@@ -113,7 +113,7 @@ fn a_limit_on_the_size_of_files_is_told_like_a_full_disk_and_nothing_is_lost() {
             told += 1;
             assert!(message.contains(&out.display().to_string()) && message.contains("`ulimit -f`"), "{kib} KiB: {message}");
             let summary = Summary::read(&out.join("summary.json")).ok();
-            assert!(summary.is_none_or(|summary| summary.status != Status::Done), "{kib} KiB: done, but {message}");
+            assert!(summary.is_none_or(|summary| summary.status != RunStatus::Done), "{kib} KiB: done, but {message}");
             let output = scratch.run(&out, &["-q", "--resume"]);
             assert_eq!(output.status.code(), Some(0), "{kib} KiB: {}", stderr(&output));
             assert_eq!(difference(&out, whole()), None, "{kib} KiB, after {message}");

@@ -6,12 +6,12 @@ use std::path::Path;
 use asperity::case::Case;
 use asperity::law::formulas::model::{self, Axisymmetric};
 use asperity::law::formulas::normal::NormalModel;
-use asperity::law::formulas::shear::Constants;
+use asperity::law::formulas::shear::ShearConstants;
 use asperity::law::variables::Body;
 use asperity::output::{HistoryWriter, OutputDirectory, StepRecord};
 
 /// The constants that the studies follow, of the size that simulations give.
-pub const CONSTANTS: Constants = Constants {
+pub const CONSTANTS: ShearConstants = ShearConstants {
     fall: [1.2, 1.8, 0.4, 1.2, 2.0, 0.3],
     exponent: [30.0, 1.3, 2.0, 1.5, 0.7, 1.5],
     slip: [1.1, 0.3, 1.0, 1.0],

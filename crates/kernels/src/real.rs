@@ -54,8 +54,6 @@ pub trait Real:
     fn max(self, other: Self) -> Self;
     /// The smaller of two; a NaN argument is dropped.
     fn min(self, other: Self) -> Self;
-    /// exp(x).
-    fn exp(self) -> Self;
     /// exp(x) - 1 without cancellation near 0.
     fn exp_m1(self) -> Self;
     /// ln(x).
@@ -135,10 +133,6 @@ macro_rules! real {
             #[inline(always)]
             fn min(self, other: Self) -> Self {
                 $t::min(self, other)
-            }
-            #[inline(always)]
-            fn exp(self) -> Self {
-                $t::exp(self)
             }
             #[inline(always)]
             fn exp_m1(self) -> Self {

@@ -197,5 +197,5 @@ fn keys_are_found_by_whole_names_parts_and_tables() {
     assert_eq!(found("hardening.law"), ["material.hardening.law"]);
     assert_eq!(found("output").len(), 6);
     assert!(found("shear_").is_empty());
-    assert_eq!(nearest("frictoin").as_deref(), Some("friction"));
+    assert_eq!(nearest_key("frictoin").as_deref(), Some("friction"));
 }

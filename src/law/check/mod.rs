@@ -46,7 +46,7 @@ const STILL_MISSING: f64 = 0.5;
 
 /// One path, simulated and followed; in the case's units.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Checked {
+pub struct CheckedPath {
     /// The path's name.
     pub name: &'static str,
     /// Its case.
@@ -66,23 +66,23 @@ pub struct Checked {
 
 /// Errors of a path, over the greatest size of the force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Errors {
+pub struct PathErrors {
     /// Root mean square.
     pub rms: f64,
     /// Greatest.
     pub worst: f64,
 }
 
-impl Errors {
+impl PathErrors {
     /// Whether both are within the aims.
     pub fn within(&self) -> bool {
         self.rms <= AIMS[0] && self.worst <= AIMS[1]
     }
 }
 
-impl Checked {
+impl CheckedPath {
     /// Errors of F_T, as a vector, and of F_N.
-    pub fn errors(&self) -> [Errors; 2] {
+    pub fn errors(&self) -> [PathErrors; 2] {
         let tangential = self.errors_of(|row| row.f_n, tangential, |row, law| (law[1] - row.f_t).hypot(law[2] - row.f_t_y));
         [tangential, self.errors_of(|row| row.f_n, |row| row.f_n, |row, law| (law[0] - row.f_n).abs())]
     }
@@ -99,14 +99,14 @@ impl Checked {
     }
 
     /// Errors of M_twist, and of M_roll as a vector; of nothing where the sphere does not turn so.
-    pub fn errors_of_moments(&self) -> [Errors; 2] {
+    pub fn errors_of_moments(&self) -> [PathErrors; 2] {
         let twists = self.rows.iter().any(|row| row.twist != 0.0);
         let rolls = self.rows.iter().any(|row| row.roll_x != 0.0 || row.roll_y != 0.0);
         let couple = |row: &StepRecord| row.f_n * row.a;
         let twist = self.errors_of(couple, |row| row.m_twist, |row, law| (law[3] - row.m_twist).abs());
         let roll = |row: &StepRecord, law: &[f64; 6]| (law[4] - row.m_roll_x).hypot(law[5] - row.m_roll_y);
         let roll = self.errors_of(couple, |row| row.m_roll_x.hypot(row.m_roll_y), roll);
-        [if twists { twist } else { Errors::default() }, if rolls { roll } else { Errors::default() }]
+        [if twists { twist } else { PathErrors::default() }, if rolls { roll } else { PathErrors::default() }]
     }
 
     /// Greatest simulated moments about the normal and about the axes in the plane, over the
@@ -124,7 +124,7 @@ impl Checked {
 
     /// Whether F_T and F_N are within the aims, and the moments of a sphere that turns.
     pub fn within(&self) -> bool {
-        self.errors().iter().chain(&self.errors_of_moments()).all(Errors::within)
+        self.errors().iter().chain(&self.errors_of_moments()).all(PathErrors::within)
     }
 
     /// Errors over the greatest size of a force, or a hundredth of the greatest of what is `whole`.
@@ -133,13 +133,13 @@ impl Checked {
         whole: fn(&StepRecord) -> f64,
         force: fn(&StepRecord) -> f64,
         error: fn(&StepRecord, &[f64; 6]) -> f64,
-    ) -> Errors {
+    ) -> PathErrors {
         let peak = peak(&self.rows, whole, force);
         if !(peak > 0.0) {
-            return Errors::default();
+            return PathErrors::default();
         }
         let errors: Vec<f64> = self.rows.iter().zip(&self.law).map(|(row, law)| error(row, law) / peak).collect();
-        Errors {
+        PathErrors {
             rms: (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt(),
             worst: errors.iter().copied().fold(0.0, f64::max),
         }
@@ -189,9 +189,9 @@ fn peak(rows: &[StepRecord], whole: impl Fn(&StepRecord) -> f64, force: impl Fn(
 /// Simulates paths and drives the update that the law exports along them, paths side by side; once
 /// `stop` is set, the simulations end after their present step, which their `failure` says.
 ///
-/// # Errors
+/// # PathErrors
 /// The law says nothing of a case; a simulation cannot be set up.
-pub fn check(law: &LawFile, paths: &[Path], stop: &Arc<AtomicBool>) -> Result<Vec<Checked>, LawError> {
+pub fn check(law: &LawFile, paths: &[Path], stop: &Arc<AtomicBool>) -> Result<Vec<CheckedPath>, LawError> {
     let room = memory::room();
     paths.iter().try_for_each(|path| check_room(&path.case, None, &room))?;
     let parameters = paths.iter().map(|path| law.contact_parameters(&pressed(&path.case))).collect::<Result<Vec<_>, _>>()?;
@@ -205,7 +205,7 @@ fn pressed(case: &Case) -> Case {
     if case.turns() { Case { path, ..case.clone() } } else { case.clone() }
 }
 
-fn run(path: &Path, parameters: &ContactParameters, stop: &Arc<AtomicBool>) -> Result<Checked, LawError> {
+fn run(path: &Path, parameters: &ContactParameters, stop: &Arc<AtomicBool>) -> Result<CheckedPath, LawError> {
     let case = &path.case;
     let companion = scout(case, stop)?;
     let problem = Problem::on(case, Some(first_zone(case, companion.as_ref())?))?;
@@ -231,7 +231,7 @@ fn run(path: &Path, parameters: &ContactParameters, stop: &Arc<AtomicBool>) -> R
     let places: Vec<[f64; 6]> = rows.iter().map(place).collect();
     let (law, taken) = drive_turning(parameters, Centres::of(case), &places, INCREMENTS);
     let simulated = rows.last().map_or(0.0, |row| row.work_plastic + row.work_friction);
-    Ok(Checked { name: path.name, case: case.clone(), dissipated: [simulated, taken], rows, mesh, law, failure })
+    Ok(CheckedPath { name: path.name, case: case.clone(), dissipated: [simulated, taken], rows, mesh, law, failure })
 }
 
 /// The rows at the limit with F_T along y at its limit too, where the others are.
@@ -244,7 +244,7 @@ fn with_limits_across(limits: &[StepRecord], raw: &[StepRecord], known: &[StepLi
     limits.iter().zip(raw).zip(known).map(across).collect()
 }
 
-/// See [`Checked::mesh`].
+/// See [`CheckedPath::mesh`].
 fn mesh_errors(rows: &[StepRecord], known: &[StepLimits]) -> Option<[f64; 2]> {
     let share = |peak: f64, missing: Option<Vec<f64>>| {
         let squares: f64 = missing?.iter().map(|error| (STILL_MISSING * error / peak).powi(2)).sum();
@@ -258,7 +258,7 @@ fn mesh_errors(rows: &[StepRecord], known: &[StepLimits]) -> Option<[f64; 2]> {
 }
 
 /// The checked paths as a table, a line each.
-pub fn table(checked: &[Checked]) -> String {
+pub fn table(checked: &[CheckedPath]) -> String {
     let mut text = format!(
         "{:<38} {:>7} {:>7} {:>7} {:>7} {:>11}   {:>15}   {:>22}\n",
         "", "F_T rms", "worst", "F_N rms", "worst", "mesh F_T, N", "F_N left (law)", "dissipated (law)"

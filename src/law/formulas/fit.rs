@@ -12,13 +12,12 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::baseline;
-use super::family::Forms;
 use super::least_squares::{PULL, minimize};
 use super::model::{self, Axisymmetric, FORMAT, Law, Parameters, PriorUse, Provenance, VERSION, Validity};
 use super::normal::{self, NormalModel, NormalState};
 use super::own_fit::own_fit;
 use super::prior::{Prior, WEIGHTS};
-use super::shear::{self, Constants, Plasticity};
+use super::shear::{self, Plasticity, ShearConstants};
 use crate::law::LawError;
 use crate::law::data::{Sample, StudyData, study_name};
 use crate::law::folds;
@@ -84,13 +83,13 @@ impl<T, W: Copy> FitStart<T, W> {
 }
 
 /// A start of the shear.
-type ShearStart = FitStart<Constants, f64>;
+type ShearStart = FitStart<ShearConstants, f64>;
 /// A start of the normal problem, with the pull of a0 and of F_N0: they are fitted one after the
 /// other, and a small study may know one of them better than its prior, but not the other.
 type NormalStart = FitStart<NormalModel, [f64; 2]>;
 
 /// The constants that fit the samples best.
-fn fit_constants(start: &ShearStart, samples: &[&Sample]) -> Result<Constants, LawError> {
+fn fit_constants(start: &ShearStart, samples: &[&Sample]) -> Result<ShearConstants, LawError> {
     let states: Vec<Plasticity> = samples.iter().map(|sample| plasticity(sample)).collect();
     let FitStart { mut constants, pull, .. } = *start;
 
@@ -108,7 +107,7 @@ fn fit_constants(start: &ShearStart, samples: &[&Sample]) -> Result<Constants, L
     let start = [&constants.exponent[..], &constants.slip[..]].concat();
     let normal: Vec<Axisymmetric> = samples.iter().map(|sample| inputs(sample)).collect();
     let weights: Vec<f64> = samples.iter().map(|sample| 1.0 / (sample.peak() * points(sample))).collect();
-    let with = |c: &[f64]| Constants { exponent: array(c), slip: array(&c[6..]), ..constants };
+    let with = |c: &[f64]| ShearConstants { exponent: array(c), slip: array(&c[6..]), ..constants };
     let found = minimize(&start, pull, |c| {
         let trial = with(c);
         let mut residuals = Vec::new();
@@ -137,7 +136,7 @@ fn fit_constants(start: &ShearStart, samples: &[&Sample]) -> Result<Constants, L
         residuals
     })
     .map_err(failed("F_N(delta_T)"))?;
-    Ok(Constants { curve: array(&found), ..constants })
+    Ok(ShearConstants { curve: array(&found), ..constants })
 }
 
 /// The constants of a0 and F_N0 that fit the samples best.
@@ -156,7 +155,7 @@ fn fit_normal(start: &NormalStart, samples: &[&Sample]) -> Result<NormalModel, L
     Ok(NormalModel::new(array(&radius), array(&force)))
 }
 
-fn law_errors(constants: &Constants, sample: &Sample, inputs: &Axisymmetric) -> CaseErrors {
+fn law_errors(constants: &ShearConstants, sample: &Sample, inputs: &Axisymmetric) -> CaseErrors {
     let parameters = model::contact(constants, inputs);
     case_errors(sample, |delta_t| model::forces(&parameters, sample.friction, delta_t))
 }
@@ -189,13 +188,13 @@ struct Compared<S, T, C> {
 }
 
 /// A fit of the shear with the errors of each case.
-type ComparedShear = Compared<ShearStart, Constants, Vec<CaseErrors>>;
+type ComparedShear = Compared<ShearStart, ShearConstants, Vec<CaseErrors>>;
 /// A fit of the normal problem.
 type ComparedNormal = Compared<NormalStart, NormalModel, NormalCandidate>;
 
 /// The starts of the shear compared, best first.
 fn compare_shears(prior: Option<&Law>, folded: &Folded) -> Result<Vec<ComparedShear>, LawError> {
-    let mut starts = vec![FitStart { constants: Constants::START, pull: PULL, prior: false }];
+    let mut starts = vec![FitStart { constants: ShearConstants::START, pull: PULL, prior: false }];
     if let Some(Law { constants, .. }) = prior {
         starts.extend(WEIGHTS.map(|pull| FitStart { constants: *constants, pull, prior: true }));
     }
@@ -297,7 +296,6 @@ pub fn fit(dir: &Path, prior: &Prior) -> Result<Law, LawError> {
     Ok(Law {
         format: FORMAT.to_owned(),
         version: VERSION,
-        forms: Forms::default(),
         constants: shear.by_fold[folds],
         normal: normal.by_fold[folds],
         validity: validity(samples)?,
@@ -314,7 +312,7 @@ pub fn fit(dir: &Path, prior: &Prior) -> Result<Law, LawError> {
 fn candidates(shears: &[ComparedShear], samples: &[Sample]) -> Vec<Candidate> {
     let fitted = shears.iter().enumerate().map(|(rank, compared)| Candidate {
         name: compared.start.name(|weight| weight.to_string()),
-        constants: Constants::COUNT,
+        constants: ShearConstants::COUNT,
         errors: Errors::over(&compared.candidate),
         kept: rank == 0,
     });

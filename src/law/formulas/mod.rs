@@ -3,10 +3,10 @@
 //!
 //! `shear` has the correlations of a shear, `normal` those of F_N0 and a0, with the elastic
 //! sphere's own force in `elastic`; `fit` determines their constants by `least_squares` and makes
-//! of them a [`Law`](model::Law) (`law.json`, whose words for them are in `family`), beside what
-//! `baseline` and each case's `own_fit` have; `prior` is what a small study may take from a bigger
-//! one. `predict` applies a law to a case, `contact_parameters` makes of it what the update needs,
-//! and `text` writes it out.
+//! of them a [`Law`](model::Law) (`law.json`; `family` knows the words of earlier versions), beside
+//! what `baseline` and each case's `own_fit` have; `prior` is what a small study may take from a
+//! bigger one. `predict` applies a law to a case, `contact_parameters` makes of it what the update
+//! needs, and `text` writes it out.
 
 pub mod elastic;
 pub mod fit;

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::family::{self, Forms};
+use super::family;
 use super::normal::{NormalModel, NormalState};
-use super::shear::{self, Constants, Plasticity};
+use super::shear::{self, Plasticity, ShearConstants};
 use crate::analytical::{ElasticSphere, cattaneo_mindlin, johnson};
 use crate::law::LawError;
 use crate::law::bounds::{Checked, TOLD, ValueBounds};
@@ -157,10 +157,8 @@ pub struct Law {
     pub format: String,
     /// [`VERSION`].
     pub version: u32,
-    /// The words for its formulas.
-    pub forms: Forms,
-    /// Their constants.
-    pub constants: Constants,
+    /// The constants of the shear.
+    pub constants: ShearConstants,
     /// F_N0 and a0 from h.
     pub normal: NormalModel,
     /// Where it holds.
@@ -251,8 +249,7 @@ impl Law {
 
     /// A law from the text of its file; the error is what is wrong, in words.
     pub(in crate::law) fn from_json(text: &str) -> Result<Self, String> {
-        family::refuse_earlier(text)?;
-        json::parse(text)
+        json::parse(&family::without_names(text)?)
     }
 }
 
@@ -300,7 +297,7 @@ impl LawKind for Law {
 }
 
 /// The law of one contact for given constants: see [`Law::contact`].
-pub fn contact(constants: &Constants, inputs: &Axisymmetric) -> Parameters {
+pub fn contact(constants: &ShearConstants, inputs: &Axisymmetric) -> Parameters {
     let sphere = inputs.sphere();
     let state = Plasticity::new(
         inputs.friction,

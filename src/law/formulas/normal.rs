@@ -15,7 +15,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::elastic::stiffening;
-use super::family::NormalForm;
 use crate::analytical::hertz;
 use crate::analytical::olsson_larsson::plastic_c_squared;
 use crate::law::variables::{Body, yield_lambda};
@@ -24,7 +23,6 @@ use crate::law::variables::{Body, yield_lambda};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NormalModel {
-    form: NormalForm,
     /// Constants of the contact radius, b1 to b4.
     pub radius: [f64; 4],
     /// Constants of the force, k1 to k6.
@@ -60,7 +58,7 @@ impl NormalModel {
 
     /// With the constants of the radius and of the force.
     pub const fn new(radius: [f64; 4], force: [f64; 6]) -> Self {
-        Self { form: NormalForm::Composed, radius, force }
+        Self { radius, force }
     }
 
     /// a0 and F_N0 at the indentation `h`, pressed with Coulomb's coefficient `friction`; zero for

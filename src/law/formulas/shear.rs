@@ -70,7 +70,7 @@ impl Plasticity {
 /// The constants of a law; the letters are those of the module's formulas.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Constants {
+pub struct ShearConstants {
     /// F_N_slip/F_N0: A, B, p, q, r, d.
     pub fall: [f64; 6],
     /// n: C, p, q, d, s, r.
@@ -81,7 +81,7 @@ pub struct Constants {
     pub curve: [f64; 4],
 }
 
-impl Constants {
+impl ShearConstants {
     /// Every constant of order one, from which the fits start and to which what the data leave open
     /// is drawn.
     pub const START: Self = Self {

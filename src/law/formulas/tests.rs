@@ -36,13 +36,13 @@ pub(in crate::law) fn elastic_sample(friction: f64) -> Sample {
 
 mod limits {
     use super::super::model::{Axisymmetric, Parameters, contact, forces};
-    use super::super::shear::Constants;
+    use super::super::shear::ShearConstants;
     use super::*;
     use crate::analytical::hertz;
     use crate::law::variables::{Body, yield_lambda};
 
-    fn constants() -> Constants {
-        Constants {
+    fn constants() -> ShearConstants {
+        ShearConstants {
             fall: [1.2, 1.8, 0.4, 1.2, 2.0, 0.3],
             exponent: [30.0, 1.3, 2.0, 1.5, 0.7, 1.5],
             slip: [1.1, 0.3, 1.0, 1.0],

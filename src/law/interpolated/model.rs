@@ -229,7 +229,7 @@ impl Interpolated {
         let mut spare = SPARE;
         loop {
             let of = |law: &Self| {
-                let Some([sphere, other]) = table::alone(case, law.body, spare) else { return Ok(None) };
+                let Some([sphere, other]) = table::bodies_alone(case, law.body, spare) else { return Ok(None) };
                 Ok::<_, LawError>(Some([law.table(&sphere)?, law.table(&other)?]))
             };
             let Some([sphere, other]) = of(self)? else { return self.table(case) };
@@ -255,7 +255,7 @@ impl Interpolated {
         // Of two bodies that are put in series each is asked by itself.
         let equal = Against::of(case) == Against::EqualSphere && self.body == Against::Plane;
         let pair = if equal { &like_itself(case) } else { case };
-        if let Some(bodies) = table::alone(pair, self.body, 1.0) {
+        if let Some(bodies) = table::bodies_alone(pair, self.body, 1.0) {
             let place = h / case.effective_radius();
             if is_of_one_material(pair) {
                 // Each is of the radius 2 R*, and gives way by half of h.

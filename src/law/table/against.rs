@@ -104,7 +104,7 @@ pub fn equivalent(case: &Case) -> ElasticSphere {
 ///
 /// # Errors
 /// A hardening law whose numbers make no law.
-pub fn first_yield(case: &Case) -> Result<Option<f64>, MaterialError> {
+pub fn indentation_at_first_yield(case: &Case) -> Result<Option<f64>, MaterialError> {
     let sphere = equivalent(case);
     let mut first: Option<f64> = None;
     for material in bodies(case) {
@@ -162,7 +162,7 @@ mod tests {
             let a = lambda * stress * both.radius / both.effective_modulus();
             a * a / both.radius
         };
-        assert!(close(first_yield(&pair).unwrap().unwrap(), soft_only(100.0)));
+        assert!(close(indentation_at_first_yield(&pair).unwrap().unwrap(), soft_only(100.0)));
         let flat = equivalent(&case(&other("flat = true")));
         assert!(close(flat.radius, 2.0) && close(flat.effective_modulus(), both.effective_modulus()));
     }
@@ -174,7 +174,10 @@ mod tests {
         assert_eq!([pair.radius, pair.youngs_modulus, pair.poissons_ratio], [1.0, 100e3, 0.3]);
         assert_eq!([plane.radius, plane.poissons_ratio], [2.0, 0.3]);
         assert!(close(plane.youngs_modulus, 200e3), "{plane:?}");
-        assert!(close(first_yield(&two).unwrap().unwrap(), 2.0 * first_yield(&one).unwrap().unwrap()));
+        assert!(close(
+            indentation_at_first_yield(&two).unwrap().unwrap(),
+            2.0 * indentation_at_first_yield(&one).unwrap().unwrap()
+        ));
         let rigid = case("[opponent]\nrigid = true\nradius = 2.0");
         assert_eq!(equivalent(&rigid).radius, 1.0);
         assert!(close(equivalent(&rigid).youngs_modulus, 200e3));

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use super::against::{Against, equivalent, first_yield};
+use super::against::{Against, equivalent, indentation_at_first_yield};
 use super::cases::case_of;
 use super::checked::check_levels;
 use super::level::{BACKBONE, Level, columns_of, level_of};
-use super::measure::{Measured, Missing, Study, measured, unloading_radius};
+use super::measure::{Measured, MeasuredStudy, Missing, measured, unloading_radius};
 use super::spline::{Spline, smooth};
 use super::tabulated::{DepthErrors, FORMAT, Tabulated, VERSION, straight};
 use crate::analytical::cattaneo_mindlin::{self, CattaneoMindlin};
@@ -73,7 +73,7 @@ pub fn depths(case: &Case) -> Result<Vec<f64>, LawError> {
     }
     // The limits are those of a sphere on a plane, in which R is R*.
     let [shallowest, half_space] = [SHALLOWEST, HALF_SPACE].map(|h| h * radius / case.effective_radius());
-    let yielding = first_yield(case)?.map_or(half_space, |h| h / radius);
+    let yielding = indentation_at_first_yield(case)?.map_or(half_space, |h| h / radius);
     let first = yielding.clamp(shallowest, half_space).min(SPAN * deepest);
     let count = (((deepest / first).ln() / RATIO.ln()).ceil() as usize + 1).max(FEWEST);
     let last = 2 * count - 2;
@@ -84,7 +84,7 @@ pub fn depths(case: &Case) -> Result<Vec<f64>, LawError> {
 /// nothing slips or yields.
 fn oblique_slope(case: &Case) -> Option<f64> {
     match case.contact.friction {
-        Friction::Coefficient(mu) if mu > 0.0 => first_yield(case).ok()?.map(|_| measured_slope(mu)),
+        Friction::Coefficient(mu) if mu > 0.0 => indentation_at_first_yield(case).ok()?.map(|_| measured_slope(mu)),
         _ => None,
     }
 }
@@ -114,7 +114,7 @@ pub fn study_text(case: &Case, elements: usize, depths: &[f64]) -> String {
 /// Results that cannot be read; [`LawError::TooFewDepths`].
 pub fn build(dir: &Path, case: &Case, elements: usize) -> Result<Built, LawError> {
     let wanted = depths(case)?;
-    let Study { depths: all, yielding, missing } = measured(dir)?;
+    let MeasuredStudy { depths: all, yielding, missing } = measured(dir)?;
     let is = |h: f64, wanted: f64| (h / wanted - 1.0).abs() < 1e-6;
     let all: Vec<Measured> = all.into_iter().filter(|one| wanted.iter().any(|&h| is(one.h, h))).collect();
     let even: Vec<Measured> = all.iter().filter(|one| wanted.iter().step_by(2).any(|&h| is(one.h, h))).cloned().collect();
@@ -161,7 +161,7 @@ pub(super) fn table(case: &Case, depths: &[Measured], elements: usize) -> Result
 /// The table of a case in units of R and E, from its levels.
 pub(super) fn of_levels(scaled: Case, mut levels: Vec<Level>, elements: usize) -> Result<Tabulated, LawError> {
     let scaled = case_of(&scaled, elements);
-    if let Some(yielding) = first_yield(&scaled)?.filter(|&h| NEAR * h < levels[0].h) {
+    if let Some(yielding) = indentation_at_first_yield(&scaled)?.filter(|&h| NEAR * h < levels[0].h) {
         levels.insert(0, hertzian(&equivalent(&scaled), friction_of(&scaled), yielding));
     }
     check_levels(&levels).map_err(|problem| LawError::NoTable { problem })?;
@@ -294,11 +294,12 @@ pub fn backbone_of(curve: impl Iterator<Item = [f64; 2]>, way: f64, stiffness: f
 
 /// Share of the exponent's excess over 1 that a reversal has which is not the first: then it turns
 /// more sharply. Between that of the first and those after it, which a contact that goes to and fro
-/// has.
+/// has. Half and twice of it: `benches/constants`.
 const AGAIN: f64 = 0.65;
 /// Share of F_N0 below which a loss is none: the update takes such a contact for elastic.
 const ELASTIC: f64 = 1e-6;
-/// Share of the way to slip up to which a reversal is fitted.
+/// Share of the way to slip up to which a reversal is fitted. Half and twice of what is missing of
+/// it: `benches/constants`.
 const MOST_OF_THE_WAY: f64 = 0.95;
 
 /// Share of Mindlin's slip displacement at which F_T/F_N is 0.99 mu: (1 - y)^(3/2) = 0.01.

@@ -117,6 +117,7 @@ impl Measured {
 }
 
 /// Share of mu above which F_T/F_N of an oblique press says that it slides, and not how it yields.
+/// Half and twice of this and of the numbers below: `benches/constants`.
 const SLIDING: f64 = 0.97;
 /// Fewest steps of an oblique press that are used, its last ones.
 const FEWEST: usize = 3;
@@ -148,7 +149,7 @@ pub fn yielding(case: &Case, history: &[StepRecord]) -> Vec<[f64; 2]> {
 }
 
 /// What a study gives.
-pub struct Study {
+pub struct MeasuredStudy {
     /// The depths that are there, increasing.
     pub depths: Vec<Measured>,
     /// [`yielding`] of its oblique press; empty without one.
@@ -161,7 +162,7 @@ pub struct Study {
 ///
 /// # Errors
 /// No study there, or a file that cannot be read.
-pub fn measured(dir: &Path) -> Result<Study, LawError> {
+pub fn measured(dir: &Path) -> Result<MeasuredStudy, LawError> {
     let (mut all, mut missing, mut oblique) = (Vec::new(), Vec::new(), Vec::new());
     for row in StudyTable::read(&dir.join("study.csv"))?.rows {
         if !row.is_done() {
@@ -181,7 +182,7 @@ pub fn measured(dir: &Path) -> Result<Study, LawError> {
         }
     }
     all.sort_by(|a, b| a.h.total_cmp(&b.h));
-    Ok(Study { depths: all, yielding: oblique, missing })
+    Ok(MeasuredStudy { depths: all, yielding: oblique, missing })
 }
 
 /// The radius a with which F_N = F (e/D)^gamma, D = gamma F/(2 E* a), takes the simulated way from

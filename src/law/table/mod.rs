@@ -19,7 +19,7 @@ mod series;
 pub mod spline;
 mod tabulated;
 
-pub use against::{Against, equivalent, first_yield, is_on_a_flat};
+pub use against::{Against, equivalent, indentation_at_first_yield, is_on_a_flat};
 pub use build::{Built, build, depths, study_text};
 pub(super) use build::{backbone_of, reversal};
 pub use cases::case_of;
@@ -28,7 +28,7 @@ pub use level::Level;
 pub(super) use level::{Curves, cleaned};
 pub use measure::Missing;
 pub(super) use measure::{Measured, unloading_radius};
-pub(super) use series::alone;
+pub(super) use series::bodies_alone;
 pub use series::{compose, compose_from};
 pub(super) use tabulated::frame_of_the_centres;
 pub use tabulated::{DepthErrors, FORMAT, Tabulated, VERSION};

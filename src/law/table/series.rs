@@ -30,12 +30,15 @@ use crate::law::range::Interval;
 
 /// Least power of a/R with which the mean pressure counts as rising where the two radii are shared
 /// out. Of a fully plastic body it stands still or falls, and any radius would do: by this the
-/// weaker body has the curvature, and equal ones half of it each.
+/// weaker body has the curvature, and equal ones half of it each. Half and twice of it:
+/// `benches/constants`.
 const RISING: f64 = 0.1;
 /// Share of its mean pressure that a plastic contact loses for a/R, at the same R'. Of simulated
-/// pairs at several ratios of the radii (fixtures/studies/ratios.toml): 0.45 to 0.67.
+/// pairs at several ratios of the radii (fixtures/studies/ratios.toml, `benches/pairs/ratios.py`):
+/// 0.45 to 0.67. Half and twice of it: `benches/constants`.
 const CONSTRAINT: f64 = 0.6;
-/// Of that at most so much, whatever the radii.
+/// Share of its mean pressure that is left at the least, whatever the radii. Half and twice of it:
+/// `benches/constants`.
 const LEAST: f64 = 0.5;
 /// Places of the mean pressure, even in ln h.
 const PLACES: usize = 200;
@@ -51,7 +54,8 @@ const ROUNDS: usize = 20;
 const RATIOS: usize = 96;
 /// Places of a limit curve.
 const FINE: usize = 4 * POINTS;
-/// A body creeps at most so many times as far as by itself.
+/// A body creeps at most so many times as far as by itself. Half and twice of it:
+/// `benches/constants`.
 const MOST_CREEP: f64 = 6.0;
 /// Share of the limit curve from which a body stands on it.
 const ON_CURVE: f64 = 1.0 - 1e-6;
@@ -558,7 +562,7 @@ pub fn compose_from(case: &Case, tables: [&Tabulated; 2], for_shear: [&Tabulated
 /// the pair, on a rigid plane or against an equal sphere, pressed as deep as the pair may need,
 /// with `spare` to multiply it; R = 1, E that of the sphere. `None` of a case whose opponent does
 /// not deform.
-pub fn alone(case: &Case, opponent: Against, spare: f64) -> Option<[Case; 2]> {
+pub fn bodies_alone(case: &Case, opponent: Against, spare: f64) -> Option<[Case; 2]> {
     let scaled = case.scaled().0;
     let Some(Opponent::Deforming { material: other, .. }) = scaled.opponent.clone() else { return None };
     let deepest = scaled.greatest_indentation();

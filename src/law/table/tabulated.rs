@@ -116,14 +116,6 @@ impl Tabulated {
         self.case().map_err(|problem| LawError::BadLaw { path: "law.json".into(), problem })
     }
 
-    /// The material, in units of its E.
-    ///
-    /// # Errors
-    /// [`LawError::BadLaw`], after reading it never.
-    pub fn material(&self) -> Result<case::Material, LawError> {
-        Ok(self.scaled_case()?.material)
-    }
-
     /// Refuses a case of another material, of another friction, or against something else.
     ///
     /// # Errors
@@ -262,7 +254,7 @@ pub(in crate::law) fn frame_of_the_centres(own: Option<Frame>, wanted: Option<Fr
 }
 
 /// Share of the force at full slip below which a point of f_T says nothing about its slope: there
-/// the tolerance of the simulated forces counts.
+/// the tolerance of the simulated forces counts. Half and twice of it: `benches/constants`.
 const SLOPE_FROM: f64 = 0.1;
 
 /// Slope with which f_T begins: the greatest of a line from its start to a point of it.

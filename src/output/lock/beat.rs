@@ -78,7 +78,7 @@ impl Own {
 }
 
 /// Whether an open file is that of one of this process's locks.
-pub fn is_own(file: &File) -> bool {
+pub fn is_locked_here(file: &File) -> bool {
     let file = identity(file.metadata());
     let own: Vec<_> = beat().own(std::process::id()).iter().filter_map(Weak::upgrade).collect();
     own.iter().any(|own| !cfg!(unix) || Some(own.identity) == file)
@@ -170,12 +170,12 @@ mod tests {
         let closed = open.closed();
         for own in [open, closed] {
             File::options().write(true).open(&path).unwrap().set_modified(long_ago).unwrap();
-            assert!(is_own(&File::open(&path).unwrap()));
+            assert!(is_locked_here(&File::open(&path).unwrap()));
             own.touch();
             assert!(fs::metadata(&path).unwrap().modified().unwrap() > long_ago + Duration::from_secs(3500));
         }
         // By no lock that is kept.
-        assert!(!is_own(&File::open(&path).unwrap()));
+        assert!(!is_locked_here(&File::open(&path).unwrap()));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::time::{Duration, SystemTime};
 
-use super::beat::is_own;
+use super::beat::is_locked_here;
 
 /// A lock's file that was not touched for so long counts no more: its process was killed.
 pub const GONE: Duration = Duration::from_secs(60);
@@ -58,7 +58,7 @@ impl Holder {
             return false;
         }
         // Our own number may have been given out again.
-        if process == std::process::id() { !is_own(file) } else { !is_running(process) }
+        if process == std::process::id() { !is_locked_here(file) } else { !is_running(process) }
     }
 }
 

@@ -17,7 +17,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::real::Real;
 
-/// Alart-Curnier's c = 0.1 E h_c: with c = E h_c the same run took twice the iterations.
+/// Alart-Curnier's c = 0.1 E h_c: with c = E h_c the same run took twice the iterations. Half and
+/// twice of it: `benches/constants`.
 pub const CONTACT_WEIGHT: f64 = 0.1;
 
 /// Coefficient of friction, or no slip at all.

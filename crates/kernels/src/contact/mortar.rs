@@ -28,7 +28,8 @@ pub struct GapWeights {
     pub at_seam: bool,
 }
 
-/// A face is covered by the image, but for the mesh's rim, from this share of its area on.
+/// A face is covered by the image, but for the mesh's rim, from this share of its area on. Half and
+/// twice of this and of the numbers below, on pairs that slide past the seam: `benches/constants`.
 pub(super) const COVERED: f64 = 0.99;
 /// A face of which the seam leaves less than this share has no dual functions of its own.
 const NARROW: f64 = 0.6;

@@ -118,7 +118,7 @@ impl Seam {
     }
 }
 
-/// Share of an element that the seam may be off a node.
+/// Share of an element that the seam may be off a node. Half and twice of it: `benches/constants`.
 const SEAM: f64 = 1e-2;
 /// What the plate has moved by less, over the radius, has not moved: a twist alone has a mean of
 /// rounding.

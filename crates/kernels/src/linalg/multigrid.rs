@@ -15,7 +15,8 @@ use crate::lanes::array;
 use crate::mesh::Prolongation;
 use crate::real::Real;
 
-/// Degree of the smoothing polynomial on either side of the coarse correction.
+/// Degree of the smoothing polynomial on either side of the coarse correction. Half and twice of
+/// this and of the numbers below: `benches/constants`.
 pub(super) const DEGREE: usize = 3;
 /// The coarsest level is solved by a polynomial that damps its whole spectrum: on the sphere's
 /// coarsest levels (80 to 300 nodes) iteration counts are those of an exact solution (2.27 to 2.26

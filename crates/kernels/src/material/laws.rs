@@ -83,16 +83,6 @@ impl HardeningLaw {
             Self::Voce => const { &[stress("yield_stress"), stress("saturation_stress"), number("rate")] },
         }
     }
-
-    /// The flow stress where a line says it; empty otherwise.
-    pub const fn formula(self) -> &'static str {
-        match self {
-            Self::Elastic | Self::Ideal | Self::Voce | Self::Table => "",
-            Self::Linear => "sigma_Y + H alpha",
-            Self::Power => "sigma_Y + K alpha^n",
-            Self::Hollomon => "sigma_0 eps^(1/m), eps the total strain",
-        }
-    }
 }
 
 /// First yield of Hollomon's law, where sigma_0 eps^(1/m) meets Hooke's line: (sigma_0^m / E)^(1/(m

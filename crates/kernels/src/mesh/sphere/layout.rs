@@ -1,7 +1,7 @@
 //! How many cells, and how their sizes grow.
 
-use super::SphereSpec;
 use super::butterfly::Butterfly;
+use super::spec::SphereSpec;
 use crate::mesh::MeshError;
 
 /// Depth of the shell under the pole, in contact radii.
