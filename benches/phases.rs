@@ -17,7 +17,7 @@ use asperity::internals::simulation::problem::Problem;
 use asperity::internals::solver::Control;
 use asperity::internals::solver::boundary::Boundary;
 use asperity::internals::solver::contact_rows::apply_contact;
-use asperity::internals::solver::opponent::plane::Plane;
+use asperity::internals::solver::opponent::rigid::RigidBody;
 use asperity::internals::solver::phases::PhaseTimes;
 use asperity::internals::solver::system::{fixed_unknowns, right_hand_side};
 use asperity::internals::solver::trial::Trial;
@@ -94,7 +94,7 @@ fn phases(criterion: &mut Criterion<Processor>, elements_per_contact_radius: usi
     let control = Control { h: trial.h, pose: Default::default(), normal_force: None };
     let mut handle = CaseHandle { backend: &mut backend, case: 0 };
     handle.begin_step(0.0)?;
-    let outcome = trial.evaluate(&mut handle, &boundary, &Plane, &control, &mut PhaseTimes::default())?;
+    let outcome = trial.evaluate(&mut handle, &boundary, &RigidBody::default(), &control, &mut PhaseTimes::default())?;
     let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
     let mut matrix = BlockMatrix::<f32>::zeros(pattern.clone());
     handle.tangent(&trial.u, &mut matrix.blocks)?;
@@ -115,7 +115,7 @@ fn phases(criterion: &mut Criterion<Processor>, elements_per_contact_radius: usi
     let mut blocks = vec![[0.0_f32; 9]; matrix.blocks.len()];
     group.bench_function("tangent, formed and gathered", |b| b.iter(|| handle.tangent(&trial.u, &mut blocks)));
     group.bench_function("contact, residual, merit", |b| {
-        b.iter(|| trial.assess(&mut handle, &boundary, &Plane, &control, &mut PhaseTimes::default()))
+        b.iter(|| trial.assess(&mut handle, &boundary, &RigidBody::default(), &control, &mut PhaseTimes::default()))
     });
     group.bench_function("contact rows, right-hand side", |b| {
         b.iter_batched_ref(

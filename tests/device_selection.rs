@@ -8,6 +8,7 @@ use asperity::internals::compute::handle::CaseHandle;
 use asperity::internals::compute::select::{DeviceChoice, PrecisionChoice, Selected, select, select_on};
 use asperity::internals::compute::{CaseModel, Compute, ComputeError};
 use asperity::internals::contact::coulomb::Friction;
+use asperity::internals::contact::rigid::Rigid;
 use asperity::internals::mesh::brick::brick;
 use asperity::material::{Elasticity, FlowStress, Material};
 use device::device;
@@ -17,7 +18,7 @@ use std::sync::Arc;
 fn models() -> Vec<CaseModel> {
     let mesh = Arc::new(brick(2, 2, 2, [1.0; 3]).unwrap());
     let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening: FlowStress::ideal(2e-3).unwrap() };
-    let model = CaseModel { mesh, material, friction: Friction::Coulomb(0.3), opponent: None };
+    let model = CaseModel { mesh, material, friction: Friction::Coulomb(0.3), opponent: None, surface: Rigid::default() };
     vec![model.clone(), model]
 }
 

@@ -3,7 +3,7 @@
 @group(0) @binding(2) var<storage, read> weight: array<real>;           // [geometry][point]: c of Alart and Curnier
 @group(0) @binding(3) var<storage, read> surface: array<u32>;           // [point]: node, and whether on the symmetry plane
 @group(0) @binding(4) var<storage, read> friction: array<real>;         // [case]
-@group(0) @binding(5) var<storage, read> gaps: array<real>;             // [case][at the start of the step, undeformed][point]
+@group(0) @binding(5) var<storage, read> facing: array<real>;           // [case][FACING][point]
 @group(0) @binding(6) var<storage, read> trial: array<real>;            // [slot][force, increment][point]
 @group(0) @binding(7) var<storage, read_write> rows: array<real>;     // [slot][residual, force rows, displacement rows][point]
 @group(0) @binding(8) var<storage, read_write> codes: array<u32>;   // [slot][point]: status + 4, 8, 16 for fixed x, y, z
@@ -21,10 +21,12 @@ fn contact_points(@builtin(global_invocation_id) id: vec3<u32>) {
     let case_index = active_cases[slot].x;
     let t = TRIAL * slot * points + id.x;
     let increment = vec3<real>(trial[t + 3u * points], trial[t + 4u * points], trial[t + 5u * points]);
+    let since_start = facing_since(case_index, id.x, FROM_START);
+    let axes = rigid_frame(since_start, increment);
     let point = ContactPoint(
-        vec3<real>(trial[t], trial[t + points], trial[t + 2u * points]),
-        gap(gaps[2u * case_index * points + id.x], increment.z),
-        slip(increment),
+        to_frame(axes, vec3<real>(trial[t], trial[t + points], trial[t + 2u * points])),
+        rigid_gap(since_start, increment),
+        to_frame(axes, increment).xy,
         weight[active_cases[slot].y * points + id.x],
         (surface[id.x] & ON_SYMMETRY_PLANE) != 0u,
     );

@@ -5,8 +5,8 @@
 @group(0) @binding(6) var<storage, read> iterates: array<real>;         // [case][iterate][increment, force][3 node + i]
 @group(0) @binding(7) var<storage, read_write> starts: array<real>;     // [case]: displacement [3 node + i], states
 @group(0) @binding(9) var<storage, read_write> before: array<real>;     // [case][3 node + i]: one step earlier
-@group(0) @binding(10) var<storage, read_write> gaps: array<real>;      // [case][at the start of the step, undeformed][point]
-// [slot][displacement, force of the plane][point]
+@group(0) @binding(10) var<storage, read_write> facing: array<real>;    // [case][FACING][point]
+// [slot][displacement, force of the opponent][point]
 @group(0) @binding(11) var<storage, read_write> at_points: array<real>;
 @group(0) @binding(12) var<storage, read_write> status: array<u32>;     // [slot][point]
 
@@ -36,19 +36,23 @@ fn iterate_commit(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let points = dimensions.contact_points;
     let point = node_info[id.x] / FIRST_POINT - 1u;
-    let of_point = 2u * case_index * points + point;
-    gaps[of_point] = gap(gaps[of_point + points], u.z);
+    let undeformed = facing_since(case_index, point, FROM_REFERENCE);
+    let of_point = facing_place(case_index, point);
+    facing[of_point] = rigid_gap(undeformed, u);
+    for (var i = 0u; i < 3u; i++) {
+        facing[of_point + (1u + i) * points] = undeformed.position[i] + u[i];
+    }
     let now = status_of(case_index, current, point);
     status[slot * points + point] = now;
     let first = conditions_place(case_index, current, point);
     let force = force_place(case_index, current, id.x);
-    // Along the plane what Coulomb's bound allows, normal to it the internal force.
     var exerted = vec3<real>();
     if now != OPEN {
-        exerted = vec3<real>(
-            iterates[force] - rows[first],
-            iterates[force + 1u] - rows[first + points],
-            max(iterates[force + 2u], real(0.0)),
+        exerted = contact_force(
+            frame_of(case_index, current, point),
+            vec3<real>(iterates[force], iterates[force + 1u], iterates[force + 2u]),
+            vec2<real>(rows[first], rows[first + points]),
+            ((node_info[id.x] >> 1u) & 1u) != 0u,
         );
     }
     for (var i = 0u; i < 3u; i++) {

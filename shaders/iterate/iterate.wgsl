@@ -7,10 +7,11 @@ const SLIDES: u32 = 1;          // without friction
 const CAME_OFF: u32 = 2;        // under full stick
 
 // Numbers of an iterate's contact point: residual, force rows, displacement rows (ROWS in all),
-// status + 4, 8, 16 for fixed x, y, z, and c of Alart and Curnier.
-const CONDITIONS: u32 = 23;
+// status + 4, 8, 16 for fixed x, y, z, c of Alart and Curnier, and the frame in which all that is.
+const CONDITIONS: u32 = 32;
 const CODE: u32 = 21;
 const WEIGHT: u32 = 22;
+const FRAME: u32 = 23;
 
 fn trial_depth(slot: u32) -> real {
     return number(slot, DEPTH) + number(slot, STEP) * number(slot, DEPTH_CHANGE);

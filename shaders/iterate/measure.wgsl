@@ -20,7 +20,10 @@ fn iterate_measure(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invoc
     if node < dimensions.nodes {
         let now = node_residual(slot, marks[slot].x, node, number(slot, DEPTH));
         let then = node_residual(slot, marks[slot].y, node, trial_depth(slot));
-        let of_case = (active_cases[slot].x * dimensions.nodes + node) * 3u;
+        let case_index = active_cases[slot].x;
+        let of_case = (case_index * dimensions.nodes + node) * 3u;
+        let along = vec3<real>(correction[of_case], correction[of_case + 1u], correction[of_case + 2u]);
+        let moved = contracted(case_index, marks[slot].x, node_info[node], along);
         for (var i = 0u; i < 3u; i++) {
             var r = then.residual[i];
             if ((then.prescribed >> i) & 1u) != 0u {
@@ -29,8 +32,8 @@ fn iterate_measure(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invoc
             square += r * r;
             largest = max(largest, abs(then.rhs[i]));
             if ((now.fixed >> i) & 1u) == 0u {
-                work_before += now.residual[i] * correction[of_case + i];
-                work += then.residual[i] * correction[of_case + i];
+                work_before += now.residual[i] * moved[i];
+                work += then.residual[i] * moved[i];
             }
         }
     }

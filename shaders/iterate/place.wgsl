@@ -4,7 +4,7 @@
 @group(0) @binding(6) var<storage, read> before: array<real>;           // [case][3 node + i]: one step earlier
 @group(0) @binding(7) var<storage, read> correction: array<real>;       // [case][3 node + i]
 @group(0) @binding(8) var<storage, read> node_info: array<u32>;         // [node]: see residual.wgsl
-@group(0) @binding(9) var<storage, read> gaps: array<real>;             // [case][at the start of the step, undeformed][point]
+@group(0) @binding(9) var<storage, read> facing: array<real>;           // [case][FACING][point]
 @group(0) @binding(10) var<storage, read_write> iterates: array<real>;  // [case][iterate][increment, force][3 node + i]
 @group(0) @binding(11) var<storage, read_write> trials: array<real>;    // [slot]: increment [3 node + i], det F - 1
 
@@ -45,8 +45,7 @@ fn iterate_place(@builtin(global_invocation_id) id: vec3<u32>) {
         d += vec3<real>(number(slot, RATIO), 0.0, number(slot, SHIFT_Z));
     }
     if has(slot, LIFTS) && info >= FIRST_POINT {
-        let height = gap(gaps[2u * case_index * dimensions.contact_points + info / FIRST_POINT - 1u], d.z);
-        d.z -= min(height, real(0.0));
+        d += rigid_push_out(facing_since(case_index, info / FIRST_POINT - 1u, FROM_START), d);
     }
     if has(slot, PLACES_PLATE) && (info & IS_PLATE) != 0u {
         d = vec3<real>(

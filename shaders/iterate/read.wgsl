@@ -54,7 +54,9 @@ fn iterate_read(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocati
         let status = code % 4u;
         let status_before = status_of(case_index, mark.x, k);
         let force = force_place(case_index, mark.y, surface[k] & ~ON_SYMMETRY_PLANE);
-        let f_z = iterates[force + 2u];
+        let exerted = vec3<real>(iterates[force], iterates[force + 1u], iterates[force + 2u]);
+        let axes = frame_of(case_index, mark.y, k);
+        let f_n = dot(axes.n, exerted);
         let row = conditions_place(case_index, mark.y, k);
         let along = rows[row] * rows[row];
         let across = rows[row + points] * rows[row + points];
@@ -62,14 +64,14 @@ fn iterate_read(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocati
         let sticks = (bits & SLIDES) == 0u;
         if status != OPEN {
             // Forces at what contact prescribes are in no residual: what is not finite is not to be lost.
-            for (var i = 0u; i < 2u; i++) {
-                let along_plane = iterates[force + i];
-                if !is_finite(along_plane) {
-                    scale += along_plane;
+            for (var i = 0u; i < 3u; i++) {
+                if !is_finite(exerted[i]) {
+                    scale += exerted[i];
                 }
             }
-            scale += abs(f_z);
-            normal += max(f_z, real(0.0));
+            scale += abs(f_n);
+            let is_halved = (surface[k] & ON_SYMMETRY_PLANE) != 0u;
+            normal += contact_force(axes, exerted, vec2<real>(rows[row], rows[row + points]), is_halved).z;
             tangential += along + across;
             count.z += 1u;
         } else if status_before == STICK && sticks {

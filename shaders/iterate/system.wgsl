@@ -1,14 +1,16 @@
 // The linear system at the current iterate, but for the tangent; a thread a node: right-hand side,
-// fixed unknowns, and the conditions of points that slide, which replace the rows of their nodes.
+// fixed unknowns, and of contact points the frames, into which the rows and columns of their nodes
+// are turned, and the conditions of those that slide, which replace the rows.
 
 // [slot][component][node], scaled, bits of single precision
 @group(0) @binding(9) var<storage, read_write> rhs: array<u32>;
 @group(0) @binding(10) var<storage, read_write> is_fixed: array<u32>;   // [slot][node]: a bit a component
-// [slot][slides, force rows, displacement rows][point], alike
+// [slot][slides, force rows, displacement rows, frame][point], alike
 @group(0) @binding(11) var<storage, read_write> sliding: array<u32>;
 
-// Numbers of a point that slides.
-const POINT_ROWS: u32 = 19u;
+// Numbers of a point, and where its frame begins.
+const POINT_ROWS: u32 = 28u;
+const POINT_FRAME: u32 = 19u;
 
 @compute @workgroup_size(64)
 fn iterate_system(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -38,7 +40,10 @@ fn iterate_system(@builtin(global_invocation_id) id: vec3<u32>) {
         sliding[out] = single_bits(1.0);
     }
     let first = conditions_place(case_index, current, point);
-    for (var c = 1u; c < POINT_ROWS; c++) {
+    for (var c = 1u; c < POINT_FRAME; c++) {
         sliding[out + c * points] = single_bits(rows[first + (c + 2u) * points]);
+    }
+    for (var c = 0u; c < POINT_ROWS - POINT_FRAME; c++) {
+        sliding[out + (POINT_FRAME + c) * points] = single_bits(rows[first + (FRAME + c) * points]);
     }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::BenchError;
 use crate::compute::CaseModel;
 use crate::contact::coulomb::Friction;
+use crate::contact::rigid::Rigid;
 use crate::lanes::Lanes;
 use crate::material::{Elasticity, FlowStress, Material, MaterialError, PointState, return_mapping};
 use crate::mesh::sphere::{SphereSpec, sphere_mesh};
@@ -102,7 +103,13 @@ pub fn models(mesh: &Mesh, count: usize) -> Result<Vec<CaseModel>, BenchError> {
         mesh.nodes.iter_mut().flatten().for_each(|x| *x *= size);
         let hardening = FlowStress::power(random.between(1e-3, 3e-3), random.between(3e-3, 6e-3), random.between(0.2, 0.5))?;
         let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening };
-        Ok(CaseModel { mesh: Arc::new(mesh), material, friction: Friction::Coulomb(random.between(0.1, 0.5)), opponent: None })
+        Ok(CaseModel {
+            mesh: Arc::new(mesh),
+            material,
+            friction: Friction::Coulomb(random.between(0.1, 0.5)),
+            opponent: None,
+            surface: Rigid::default(),
+        })
     };
     (0..count).map(case).collect()
 }

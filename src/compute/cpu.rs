@@ -13,7 +13,8 @@ use super::{
     TangentBlocks,
 };
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, contact_rows};
-use crate::contact::plane::{gap, slip};
+use crate::contact::frame::to_frame;
+use crate::contact::rigid::Rigid;
 use crate::element::hex8::{self, ElementGeometry, ElementState, Invalid, NODES, Nodal, Points, Tangent, pair};
 use crate::lanes::array;
 use crate::material::multistep::Flow;
@@ -42,6 +43,8 @@ struct CpuCase<R, T> {
     /// Material of the elements from this one on.
     opponent: (usize, Material<R>),
     friction: Friction<R>,
+    /// Of a rigid opponent.
+    surface: Rigid,
     mesh: Arc<Mesh>,
     geometry: Vec<ElementGeometry<R>>,
     /// What tangents take of material and geometry.
@@ -176,6 +179,7 @@ impl<R: Real, T: Real> CpuCase<R, T> {
                 Friction::Coulomb(mu) => Friction::Coulomb(R::of(mu)),
                 Friction::Stick => Friction::Stick,
             },
+            surface: model.surface,
             state: vec![ElementState::default(); mesh.elements.len()],
             start: vec![Points::default(); mesh.elements.len()],
             committed: vec![0.0; 3 * mesh.nodes.len()],
@@ -394,12 +398,15 @@ impl<R: Real, T: Real> Cpu<R, T> {
         let nodes = case.mesh.contact_nodes.iter().enumerate();
         let numbers = displacement.as_chunks::<3>().0.iter().zip(force.as_chunks::<3>().0);
         let rows = nodes.zip(numbers).map(|((i, &node), (u, force))| {
-            let start = &case.committed[3 * node as usize..][..3];
+            let (start, reference) = (&case.committed[3 * node as usize..][..3], case.mesh.nodes[node as usize]);
+            // Formed in f64: a gap is a small difference of larger numbers.
+            let x = std::array::from_fn(|c| reference[c] + u[c]);
+            let frame = case.surface.frame(&x);
+            let [along, across, _] = to_frame(&frame, &std::array::from_fn(|c| u[c] - start[c]));
             let point = Point {
-                force: force.map(R::of),
-                // Formed in f64: a gap is a small difference of larger numbers.
-                gap: R::of(gap(case.mesh.nodes[node as usize][2], u[2])),
-                slip: slip([u[0], u[1]], [start[0], start[1]]).map(R::of),
+                force: to_frame(&frame, force).map(R::of),
+                gap: R::of(case.surface.gap(&x)),
+                slip: [along, across].map(R::of),
                 weight: case.weight[i],
                 on_symmetry_plane: case.on_symmetry_plane[i],
             };

@@ -3,7 +3,7 @@
 //!
 //! A backend that keeps iterates ([`super::About::keeps`]) has two for each case, the
 //! current one and a trial, both as increments since the committed state, and a correction that
-//! leads from the one to the other. Over a plane only.
+//! leads from the one to the other. Over a rigid body only.
 
 use super::linear::SideReport;
 use super::{Energies, Evaluated, Fault};
@@ -37,12 +37,12 @@ pub struct Plate {
 /// Where a step's first iterate comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum From {
-    /// The committed displacement and so many times the last step; `lift` puts points that come out
-    /// below the plane on it. The plate is placed.
+    /// The committed displacement and so many times the last step; `lift` puts points that have
+    /// passed the opponent's surface on it. The plate is placed.
     Extrapolation {
         /// Share of the last step.
         ratio: f64,
-        /// Whether points are put on the plane.
+        /// Whether points are put on the surface.
         lift: bool,
     },
     /// The committed displacement: the plate has not moved yet.
@@ -122,7 +122,7 @@ pub struct Reading {
     /// Norm of the residual: free forces, contact residuals, missing displacements and the missing
     /// normal force, all as forces.
     pub merit: f64,
-    /// Sum of |f_z| over the points in contact.
+    /// Sum of the normal forces |f_n| over the points in contact.
     pub force_scale: f64,
     /// Normal force that the plate feels, minus its f_z.
     pub plate_force: f64,
@@ -183,8 +183,8 @@ pub struct Corrected {
 pub struct SettledPoint {
     /// Displacement.
     pub displacement: [f64; 3],
-    /// What the plane exerts: along it what Coulomb's bound allows, normal to it the internal
-    /// force.
+    /// What the opponent exerts: along its surface what Coulomb's bound allows, normal to it the
+    /// internal force.
     pub force: [f64; 3],
     /// What it does.
     pub status: Status,

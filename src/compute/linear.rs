@@ -4,15 +4,18 @@ use std::sync::Arc;
 
 use super::Evaluated;
 use crate::contact::coulomb::Rows;
+use crate::contact::frame::ContactFrame;
 
 /// Asks to form the tangent of one case and to solve linear systems with it, without bringing it to
-/// the host. Over a plane only: contact conditions are stated in the axes of space.
+/// the host. Over a rigid body only, with the unknowns of contact nodes in their frames.
 #[derive(Clone, Debug)]
 pub struct SolveRequest {
     /// Trial displacement, three a node.
     pub displacement: Arc<[f64]>,
     /// Contact conditions; those of points that slide replace the rows of their nodes.
     pub rows: Vec<Rows<f64>>,
+    /// Frames of contact nodes; none where all are the axes.
+    pub frames: Vec<ContactFrame>,
     /// Per unknown: its row is one of the identity, whatever the tangent holds.
     pub fixed: Vec<bool>,
     /// The systems.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::coulomb::Friction;
+use crate::contact::rigid::Rigid;
 use crate::material::multistep::Flow;
 use crate::material::{Material, PointState};
 use crate::mesh::Mesh;
@@ -16,10 +17,12 @@ pub struct CaseModel {
     pub mesh: Arc<Mesh>,
     /// Elasticity and hardening.
     pub material: Material<f64>,
-    /// Friction between sphere and plane.
+    /// Friction between sphere and opponent.
     pub friction: Friction<f64>,
     /// Elasticity and hardening of the opponent, if the mesh is of two bodies.
     pub opponent: Option<Material<f64>>,
+    /// Surface of an opponent that does not deform: the plane by default.
+    pub surface: Rigid,
 }
 
 impl CaseModel {

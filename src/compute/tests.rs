@@ -10,6 +10,7 @@ use super::cpu::Cpu;
 use super::handle::{CaseHandle, at};
 use super::{CaseModel, Compute, ComputeError, Energies, Evaluated, Fault};
 use crate::contact::coulomb::{Friction, Point, Rows, contact_rows};
+use crate::contact::rigid::Rigid;
 use crate::material::hardening::FlowStress;
 use crate::material::{Elasticity, Material};
 use crate::mesh::pattern::Pattern;
@@ -41,13 +42,21 @@ fn models() -> Vec<CaseModel> {
             material: material(FlowStress::ideal(2e-3).unwrap()),
             friction: Friction::Coulomb(0.3),
             opponent: None,
+            surface: Rigid::default(),
         },
-        CaseModel { mesh: mesh(1.1), material: material(FlowStress::Elastic), friction: Friction::Coulomb(0.0), opponent: None },
+        CaseModel {
+            mesh: mesh(1.1),
+            material: material(FlowStress::Elastic),
+            friction: Friction::Coulomb(0.0),
+            opponent: None,
+            surface: Rigid::default(),
+        },
         CaseModel {
             mesh: mesh(0.9),
             material: material(FlowStress::power(1e-3, 5e-3, 0.3).unwrap()),
             friction: Friction::Stick,
             opponent: None,
+            surface: Rigid::default(),
         },
     ]
 }

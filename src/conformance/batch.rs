@@ -5,6 +5,7 @@ use crate::compute::gpu::{DeviceReal, Gpu, GpuContext};
 use crate::compute::handle::at_contact;
 use crate::compute::{Answer, Call, CaseModel, Compute, Energies, Evaluated, TangentBlocks};
 use crate::contact::coulomb::{Friction, Rows};
+use crate::contact::rigid::Rigid;
 use crate::material::{Elasticity, FlowStress, Material};
 use crate::mesh::brick::brick;
 use crate::mesh::couple::{couple, scaled};
@@ -110,6 +111,7 @@ pub fn models_on(meshes: [Arc<Mesh>; 2]) -> Vec<CaseModel> {
         material: Material { elasticity: Elasticity::new(1.0, [0.3, 0.0, 0.45][i % 3]), hardening: law.unwrap() },
         friction: frictions[i % 4],
         opponent: None,
+        surface: Rigid::default(),
     };
     laws.into_iter().enumerate().map(model).collect()
 }

@@ -10,14 +10,16 @@ use crate::compute::iterate::{Ask, Begin, Correct, Corrected, From, Keeps, Plate
 use crate::compute::linear::Ended;
 use crate::compute::{Answer, Call, CaseModel, Compute, Evaluated, Fault};
 use crate::contact::coulomb::{Friction, Status};
+use crate::contact::rigid::Rigid;
 use crate::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
 use crate::material::{Elasticity, FlowStress, Material};
 use crate::mesh::Mesh;
 use crate::solver::boundary::Boundary;
-use crate::solver::contact_rows::apply_contact;
+use crate::solver::contact_rows::{apply_contact, turn};
 use crate::solver::iterate::SetOut;
 use crate::solver::newton::Newton;
-use crate::solver::opponent::plane::Plane;
+use crate::solver::opponent::Opponent;
+use crate::solver::opponent::rigid::RigidBody;
 use crate::solver::phases::PhaseTimes;
 use crate::solver::pose::Pose;
 use crate::solver::system::{fixed_unknowns, plate_functional, right_hand_side};
@@ -28,19 +30,22 @@ use std::sync::Arc;
 /// Depth to which the cases are pressed.
 pub const DEPTH: f64 = 0.004;
 
-/// Spheres that are elastic and slide a little, plastic under full stick, and plastic without
-/// friction.
+/// Spheres on a plane that are elastic and slide a little, plastic under full stick, and plastic
+/// without friction; and plastic ones on spheres, with friction and without.
 fn models(mesh: &Arc<Mesh>) -> Vec<CaseModel> {
     let cases = [
-        (FlowStress::Elastic, Friction::Coulomb(0.3)),
-        (FlowStress::ideal(2e-3).unwrap(), Friction::Stick),
-        (FlowStress::ideal(4e-3).unwrap(), Friction::Coulomb(0.0)),
+        (FlowStress::Elastic, Friction::Coulomb(0.3), 0.0),
+        (FlowStress::ideal(2e-3).unwrap(), Friction::Stick, 0.0),
+        (FlowStress::ideal(4e-3).unwrap(), Friction::Coulomb(0.0), 0.0),
+        (FlowStress::ideal(2e-3).unwrap(), Friction::Coulomb(0.3), 1.25),
+        (FlowStress::ideal(4e-3).unwrap(), Friction::Coulomb(0.0), 0.5),
     ];
-    let model = |(hardening, friction)| CaseModel {
+    let model = |(hardening, friction, curvature)| CaseModel {
         mesh: mesh.clone(),
         material: Material { elasticity: Elasticity::new(1.0, 0.3), hardening },
         friction,
         opponent: None,
+        surface: Rigid { curvature },
     };
     cases.map(model).to_vec()
 }
@@ -79,7 +84,7 @@ fn pressed_on(context: &Arc<GpuContext>, mesh: &Arc<Mesh>) -> Pressed {
         let mesh = &model.mesh;
         let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
         let linear = LinearSolver::<f32>::new(SolverKind::Multigrid, &pattern, &mesh.hierarchy).unwrap();
-        let mut newton = Newton::new(mesh, linear, settings);
+        let mut newton = Newton::new(mesh, linear, settings).against(Box::new(opponent(model)));
         let zero = vec![0.0; 3 * mesh.nodes.len()];
         let start =
             SetOut { displacement: &zero, h: 0.0, pose: Pose::default(), guess: None, extrapolation: None, came_off: &[] };
@@ -94,6 +99,11 @@ fn pressed_on(context: &Arc<GpuContext>, mesh: &Arc<Mesh>) -> Pressed {
         CaseHandle { backend: &mut cpu, case }.restore(state).unwrap();
     }
     Pressed { gpu, cpu, models, displacement }
+}
+
+/// What a case is pressed against.
+fn opponent(model: &CaseModel) -> RigidBody {
+    RigidBody { surface: model.surface }
 }
 
 /// What a control says of the plate.
@@ -130,7 +140,8 @@ fn on_host(pressed: &mut Pressed, case: usize, u: &[f64], h: f64, control: &Cont
     trial.u.copy_from_slice(u);
     trial.h = h;
     let mut handle = CaseHandle { backend: &mut pressed.cpu, case };
-    let outcome = trial.evaluate(&mut handle, &boundary, &Plane, control, &mut PhaseTimes::default()).unwrap();
+    let opponent = opponent(&pressed.models[case]);
+    let outcome = trial.evaluate(&mut handle, &boundary, &opponent, control, &mut PhaseTimes::default()).unwrap();
     assert_eq!(outcome, Evaluated::Valid);
     (trial, boundary)
 }
@@ -148,7 +159,7 @@ pub fn a_trial_reads_as_on_the_cpu(context: &Arc<GpuContext>) {
 fn a_trial_reads_so_on(mut pressed: Pressed) {
     for case in 0..pressed.models.len() {
         for held in [None, Some(1e-4)] {
-            let mesh = pressed.models[case].mesh.clone();
+            let (mesh, opponent) = (pressed.models[case].mesh.clone(), opponent(&pressed.models[case]));
             let control = Control { h: DEPTH + 1e-4, pose: Pose::along_x(2e-4), normal_force: held };
             let start = pressed.displacement[case].clone();
             let at_start = reading(&ask(&mut pressed.gpu, &[(case, false, plate(&control), begin(&mesh))])[0]);
@@ -160,6 +171,8 @@ fn a_trial_reads_so_on(mut pressed: Pressed) {
             let mut rng = random(70 + case as u64);
             let correction: Vec<f64> = start.iter().map(|_| rng.between(-2e-5, 2e-5)).collect();
             ask(&mut pressed.gpu, &[(case, false, plate(&control), Ask::Give(correction.clone()))]);
+            let mut unknowns = correction.clone();
+            opponent.contract(&current, &mesh, &mut unknowns);
             for (length, delta_h) in [(1.0, 3e-5), (0.3, 3e-5)] {
                 let tried = reading(&ask(&mut pressed.gpu, &[(case, false, plate(&control), Ask::Try(length, delta_h))])[0]);
                 let h = control.h + length * delta_h;
@@ -172,8 +185,8 @@ fn a_trial_reads_so_on(mut pressed: Pressed) {
                 near("force scale", tried.force_scale, trial.force_scale, trial.force_scale);
                 near("plate force", tried.plate_force, trial.plate_force, trial.force_scale);
                 near("tangential", tried.tangential, trial.tangential_residual(), trial.merit);
-                near("normal force", tried.normal_force, trial.contact_force(&mesh, &boundary, &Plane)[2], trial.force_scale);
-                let free = || trial.residual.iter().zip(&correction).zip(&fixed).filter(|(_, fixed)| !**fixed);
+                near("normal force", tried.normal_force, trial.contact_force(&mesh, &boundary, &opponent)[2], trial.force_scale);
+                let free = || trial.residual.iter().zip(&unknowns).zip(&fixed).filter(|(_, fixed)| !**fixed);
                 let (slope, size) = free().fold((0.0, 0.0), |(s, t), ((r, d), _)| (s + r * d, t + (r * d).abs()));
                 near("slope", tried.slope, slope, size);
                 let changed = trial.rows.iter().zip(&current.rows).filter(|(a, b)| a.status != b.status).count();
@@ -235,6 +248,7 @@ fn a_correction_solves_it_on(mut pressed: Pressed) {
             matrix.blocks.copy_from_slice(&blocks);
             let mut functional = vec![0.0; x.len()];
             plate_functional(&matrix, &boundary.plate, &mut functional);
+            turn(&mut matrix, &mesh, &current.frames);
             apply_contact(&mut matrix, &mesh, &current.rows);
             let (mut fixed, mut rhs) = (vec![false; x.len()], vec![0.0; x.len()]);
             fixed_unknowns(&mesh, &boundary, &current.rows, &mut fixed);
@@ -251,7 +265,9 @@ fn a_correction_solves_it_on(mut pressed: Pressed) {
                 assert!(found.unit.is_some() && missing.abs() <= 1e-3 * target, "{missing} of {target}");
                 assert!(found.delta_h > 0.0);
             } else {
-                assert!(found.unit.is_none() && left(&x) <= 1.02e-4 * left(&nothing), "{} of {}", left(&x), left(&nothing));
+                let mut y = x.clone();
+                opponent(&pressed.models[case]).contract(&current, &mesh, &mut y);
+                assert!(found.unit.is_none() && left(&y) <= 1.02e-4 * left(&nothing), "{} of {}", left(&y), left(&nothing));
             }
             let (then, _) = on_host(&mut pressed, case, &vectors.displacement, control.h + found.delta_h, &control);
             near("merit", found.trial.merit, then.merit, then.merit);

@@ -7,11 +7,13 @@ use crate::compute::gpu::{DeviceReal, Gpu, GpuContext};
 use crate::compute::linear::{self, Ended, Side, SideReport, Solved};
 use crate::compute::{Answer, Call, CaseModel, Compute, Evaluated};
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, Status, contact_rows};
+use crate::contact::frame::ContactFrame;
+use crate::contact::rigid::Rigid;
 use crate::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
 use crate::material::{Elasticity, FlowStress, Material};
 use crate::mesh::{Mesh, Prolongation, SphereSpec, brick, sphere_mesh, whole};
 use crate::solver::boundary::Boundary;
-use crate::solver::contact_rows::apply_contact;
+use crate::solver::contact_rows::{apply_contact, turn};
 use crate::solver::system::{fixed_unknowns, plate_functional};
 use std::sync::Arc;
 
@@ -69,14 +71,16 @@ pub fn whole_mesh() -> Arc<Mesh> {
     mesh
 }
 
-/// Three spheres: elastic, plastic, nearly incompressible.
+/// Three spheres: elastic, plastic on a sphere, nearly incompressible.
 pub fn models(mesh: &Arc<Mesh>) -> Vec<CaseModel> {
-    let cases = [(FlowStress::Elastic, 0.3), (FlowStress::ideal(2e-3).unwrap(), 0.3), (FlowStress::Elastic, 0.49)];
-    let model = |(hardening, nu): (FlowStress<f64>, f64)| CaseModel {
+    let cases =
+        [(FlowStress::Elastic, 0.3, 0.0), (FlowStress::ideal(2e-3).unwrap(), 0.3, 1.25), (FlowStress::Elastic, 0.49, 0.0)];
+    let model = |(hardening, nu, curvature): (FlowStress<f64>, f64, f64)| CaseModel {
         mesh: mesh.clone(),
         material: Material { elasticity: Elasticity::new(1.0, nu), hardening },
         friction: Friction::Coulomb(0.3),
         opponent: None,
+        surface: Rigid { curvature },
     };
     cases.map(model).to_vec()
 }
@@ -85,6 +89,7 @@ pub fn models(mesh: &Arc<Mesh>) -> Vec<CaseModel> {
 pub struct TestSystem {
     displacement: Vec<f64>,
     rows: Vec<Rows<f64>>,
+    frames: Vec<ContactFrame>,
     /// Unknowns that are prescribed.
     pub fixed: Vec<bool>,
     /// Right-hand side.
@@ -142,11 +147,16 @@ pub fn system(numbers: Numbers, case: usize, models: &[CaseModel], masked: bool)
     let rhs = fixed.iter().map(|&fixed| size(fixed) * between(-1.0, 1.0)).collect();
     let mut matrix = BlockMatrix::zeros(Pattern::from_elements(mesh.nodes.len(), &mesh.elements));
     matrix.blocks.copy_from_slice(&blocks);
+    let surface = models[case].surface;
+    let frame =
+        |&node: &u32| surface.frame(&std::array::from_fn(|i| mesh.nodes[node as usize][i] + displacement[3 * node as usize + i]));
+    let frames: Vec<ContactFrame> = mesh.contact_nodes.iter().filter(|_| !surface.is_plane()).map(frame).collect();
+    turn(&mut matrix, mesh, &frames);
     let mut functional = vec![0.0; n];
     plate_functional(&matrix, &boundary.plate, &mut functional);
     apply_contact(&mut matrix, mesh, &rows);
     assert!([Status::Open, Status::Stick, Status::Slip].iter().all(|status| rows.iter().any(|row| row.status == *status)));
-    TestSystem { displacement, rows, fixed, rhs, matrix, functional }
+    TestSystem { displacement, rows, frames, fixed, rhs, matrix, functional }
 }
 
 impl TestSystem {
@@ -176,9 +186,10 @@ pub fn asked(system: &TestSystem, sides: &[(f64, Vec<f64>)], expected: usize, re
         expected,
         guess: guess.clone(),
     };
-    let TestSystem { displacement, rows, fixed, .. } = system;
-    let (rows, fixed) = (rows.clone(), fixed.clone());
-    linear::SolveRequest { displacement: displacement.as_slice().into(), rows, fixed, sides: sides.iter().map(side).collect() }
+    let TestSystem { displacement, rows, frames, fixed, .. } = system;
+    let (rows, frames, fixed) = (rows.clone(), frames.clone(), fixed.clone());
+    let sides = sides.iter().map(side).collect();
+    linear::SolveRequest { displacement: displacement.as_slice().into(), rows, frames, fixed, sides }
 }
 
 /// The answers to systems of cases.

@@ -22,8 +22,7 @@ use crate::solver::opponent;
 use crate::solver::opponent::couple::TwoBodies;
 use crate::solver::opponent::joint::Joint;
 use crate::solver::opponent::pair::EqualPair;
-use crate::solver::opponent::plane::Plane;
-use crate::solver::opponent::rigid::RigidSphere;
+use crate::solver::opponent::rigid::RigidBody;
 use crate::solver::{FULLY_PLASTIC, Settings, SolverError, first_linear, held_linear, loosest_linear, monotone_from};
 
 /// A case ready to be simulated.
@@ -152,6 +151,14 @@ fn opponent_material(Scaled(case): &Scaled<Case>) -> Result<Option<Material<f64>
     }
 }
 
+/// The surface of a scaled case's opponent, if that does not deform.
+fn rigid_surface(case: &Case) -> Rigid {
+    match case.opponent {
+        Some(Opponent::Rigid { radius }) => Rigid { curvature: 1.0 / radius },
+        _ => Rigid::default(),
+    }
+}
+
 /// The two bodies of a scaled case whose opponent deforms.
 fn two_bodies(Scaled(case): &Scaled<Case>, slaves_are_exchanged: bool) -> Option<TwoBodies> {
     match &case.opponent {
@@ -234,6 +241,7 @@ impl Problem {
                     case::Friction::Stick => Friction::Stick,
                 },
                 opponent,
+                surface: rigid_surface(case),
             },
             case: scaled,
         })
@@ -305,8 +313,7 @@ impl Problem {
     fn opponent(&self) -> Box<dyn opponent::Opponent> {
         let mesh = &self.model.mesh;
         match &self.case.0.opponent {
-            None => Box::new(Plane),
-            Some(Opponent::Rigid { radius }) => Box::new(RigidSphere::new(Rigid { curvature: 1.0 / radius })),
+            None | Some(Opponent::Rigid { .. }) => Box::new(RigidBody { surface: self.model.surface }),
             Some(Opponent::Equal) => {
                 let image = self.case.0.image().unwrap_or_default();
                 Box::new(Joint::new(mesh, EqualPair { image }))

@@ -124,20 +124,20 @@ impl Newton {
 
     /// Which iterates of the case stay on this backend.
     pub fn keeps_on(&self, case: &CaseHandle<'_>) -> Keeps {
-        let is_known = self.iterates.host.is_over_plane_by_multigrid() && self.at_home.is_none();
+        let is_known = self.iterates.host.is_rigid_by_multigrid() && self.at_home.is_none();
         if is_known { case.keeps() } else { Keeps::Nothing }
     }
 
     /// Why vectors stay on the host whatever a device can do, and with them the linear systems,
-    /// where these are not those of one body over a plane; `None` where neither does.
+    /// where these are not those of one body over a rigid one; `None` where neither does.
     pub fn stays_on_host(&self) -> Option<&'static str> {
         let host = &self.iterates.host;
-        if !host.opponent().is_plane() {
+        if !host.opponent().is_rigid() {
             return Some(
-                "the sphere is pressed against a body, so the vectors and linear systems of Newton's method stay on the host",
+                "the sphere is pressed against a body that deforms, so the vectors and linear systems of Newton's method stay on the host",
             );
         }
-        if !host.is_over_plane_by_multigrid() {
+        if !host.is_rigid_by_multigrid() {
             return Some("solver.linear is \"direct\", so the vectors and linear systems of Newton's method stay on the host");
         }
         self.at_home

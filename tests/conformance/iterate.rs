@@ -32,14 +32,14 @@ fn a_batch_reads_as_its_cases_alone_and_little_passes() {
             assert!(passed.dispatches <= 30 * 13 * systems + 40, "{passed:?}");
             answers
         };
-        let together = round(gpu, &[0, 1, 2]);
+        let together = round(gpu, &[0, 1, 2, 3, 4]);
         assert!(together.iter().all(|(_, found)| found.report.ended == Ended::Converged));
         assert!(together.iter().all(|(_, found)| found.unit.is_some() == held.is_some()));
-        for case in 0..3 {
+        for case in 0..5 {
             assert_eq!(round(gpu, &[case])[0], together[case], "case {case} alone");
         }
-        let turned = round(gpu, &[2, 0]);
-        assert_eq!((turned[0], turned[1]), (together[2], together[0]));
+        let others = round(gpu, &[3, 0]);
+        assert_eq!((others[0], others[1]), (together[3], together[0]));
     }
 }
 
@@ -52,9 +52,9 @@ fn a_list_that_is_too_short_changes_no_bit() {
     let (gpu, mesh) = (&mut pressed.gpu, pressed.models[0].mesh.clone());
     for held in [None, Some(2e-4)] {
         let control = Control { h: DEPTH + 2e-4, pose: Pose::along_x(0.0), normal_force: held };
-        let (expected, _) = correct_from_start(gpu, &mesh, &[0, 1, 2], &control, 1e-3, [20, 20]);
+        let (expected, _) = correct_from_start(gpu, &mesh, &[0, 1, 2, 3, 4], &control, 1e-3, [20, 20]);
         for lists in [[0, 20], [20, 0], [0, 0]] {
-            let (found, passed) = correct_from_start(gpu, &mesh, &[0, 1, 2], &control, 1e-3, lists);
+            let (found, passed) = correct_from_start(gpu, &mesh, &[0, 1, 2, 3, 4], &control, 1e-3, lists);
             let short = lists[0] == 0 || held.is_some();
             assert!(!short || passed.waits > 1, "{lists:?}: {passed:?}");
             assert_eq!(found, expected, "{lists:?}");

@@ -5,6 +5,7 @@ use asperity::internals::compute::gpu::{Gpu, Precision};
 use asperity::internals::compute::iterate::Keeps;
 use asperity::internals::compute::{CaseModel, Compute};
 use asperity::internals::contact::coulomb::Friction;
+use asperity::internals::contact::rigid::Rigid;
 use asperity::internals::mesh::{Mesh, SphereSpec, sphere_mesh};
 use asperity::material::{Elasticity, FlowStress, Material};
 use std::sync::Arc;
@@ -50,6 +51,7 @@ fn memory(name: &str, mesh: &Mesh) -> Option<[u64; 2]> {
             material: Material { elasticity: Elasticity::new(1.0, 0.3), hardening: FlowStress::ideal(2e-3).unwrap() },
             friction: Friction::Coulomb(0.3),
             opponent: None,
+            surface: Rigid::default(),
         };
         let models = (0..cases).map(|_| model()).collect();
         let gpu = Gpu::<f64>::with_tangents_in_single(context.into(), models).unwrap();

@@ -24,7 +24,6 @@ use crate::compute::{
     About, Answer, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Evaluated, TangentBlocks,
 };
 use crate::contact::coulomb::{CONTACT_WEIGHT, Rows};
-use crate::contact::plane::slip;
 use crate::element::hex8::QUADRATURE_POINTS;
 use crate::material::PointState;
 use crate::material::multistep::Flow;
@@ -211,8 +210,8 @@ impl<R: DeviceReal> Gpu<R> {
             let start = at_contact(&self.models[*case].mesh, &self.committed[*case]);
             let of_points = displacement.as_chunks::<3>().0.iter().zip(start.as_chunks::<3>().0).zip(force.as_chunks::<3>().0);
             for (k, ((u, start), force)) in of_points.enumerate() {
-                let [x, y] = slip([u[0], u[1]], [start[0], start[1]]);
-                let numbers = [force[0], force[1], force[2], x, y, u[2] - start[2]];
+                let [x, y, z] = std::array::from_fn(|i| u[i] - start[i]);
+                let numbers = [force[0], force[1], force[2], x, y, z];
                 numbers.into_iter().enumerate().for_each(|(c, value)| trial[c * points + k] = R::of(value));
             }
         }

@@ -113,6 +113,7 @@ impl<R: DeviceReal> Batch<R> {
                 Tangents::Single(single) => SlotSolver::new(&context, &plan, (slots, &scratch.pools), single.set().blocks()),
             })
             .transpose()?;
+        linear.iter().try_for_each(|linear| linear.face(&context, models))?;
         let groups: Vec<(Resident<R>, EvaluationKernels)> = residents
             .into_iter()
             .map(|r| EvaluationKernels::new(&context, &connectivity, &r, &scratch).map(|k| (r, k)))
@@ -360,7 +361,7 @@ impl<R: DeviceReal> Batch<R> {
         let mut list = self.context.record();
         self.append_keep(&mut list, resident, slot, case)?;
         list.submit()?;
-        resident.set_displacement(&self.context, self.sizes(), case, &model.mesh, displacement)
+        resident.set_displacement(&self.context, self.sizes(), case, model, displacement)
     }
 
     /// Appends the copies that make the states in `slot` those of a case of the group.
@@ -420,7 +421,7 @@ impl<R: DeviceReal> Batch<R> {
         self.context.upload_at(&resident.history, index * HISTORY * points, state)?;
         self.context.upload_at(&resident.start, start, &state[..STATE * points])?;
         self.context.upload_at(&resident.plastic_work, index * self.sizes().elements, work)?;
-        resident.set_displacement(&self.context, self.sizes(), index, &model.mesh, displacement)
+        resident.set_displacement(&self.context, self.sizes(), index, model, displacement)
     }
 
     pub(super) fn resident(&self, case: usize) -> Result<(&Resident<R>, usize), GpuError> {

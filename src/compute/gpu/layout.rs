@@ -28,10 +28,19 @@ pub const STRESS: usize = 9;
 pub const TRIAL: usize = 6;
 /// Numbers of a contact point's conditions: residual, force rows, displacement rows.
 pub const ROWS: usize = 3 + 2 * 9;
-/// Numbers of a contact point's conditions that an iterate keeps: those, status, weight.
-pub const CONDITIONS: usize = ROWS + 2;
-/// Numbers that a contact point has in the linear solver: whether it slides, its rows.
-pub const POINT_ROWS: usize = 1 + 2 * 9;
+/// Numbers of a frame.
+pub const FRAME: usize = 9;
+/// Numbers of a contact point's conditions that an iterate keeps: those, status, weight, frame.
+pub const CONDITIONS: usize = ROWS + 2 + FRAME;
+/// Numbers that a contact point has in the linear solver: whether it slides, its rows, its frame.
+pub const POINT_ROWS: usize = 1 + 2 * 9 + FRAME;
+/// Numbers of a contact point before it moves: gap and position at the start of the step, the same
+/// of the undeformed body, curvature of the opponent.
+pub const FACING: usize = 2 * GAP_AND_POSITION + 1;
+/// The first half of these.
+pub const GAP_AND_POSITION: usize = 4;
+/// What of them is read at a time: gap, position, curvature.
+pub const FACED: usize = GAP_AND_POSITION + 1;
 /// Numbers of a contact point that are recorded: displacement, force.
 pub const AT_POINT: usize = 6;
 /// Slots of a dispatch at the most: what is small for each of them is a block of parameters of this

@@ -32,8 +32,8 @@ const BUT: &[(&str, &[&str], But)] = &[
     ("gather_node_force", &["element_nodes"], But::Left),
     // The committed state, and not its last flow.
     ("hex8_update", &["history"], But::OneOf(2)),
-    // The contact's rows where points slide, and the diagonals for them.
-    ("assemble", &["diagonal", "rows"], But::Left),
+    // The contact's rows where points slide and the diagonals for them, columns over a curved opponent.
+    ("assemble", &["diagonal", "rows", "column"], But::Left),
     // What is fixed.
     ("prescribe", &["rhs"], But::Left),
     // The inverses, and not what rounding takes.
@@ -53,7 +53,7 @@ const BUT: &[(&str, &[&str], But)] = &[
     ("krylov_orthogonalise", &["basis"], But::PerVector),
     ("krylov_combine", &["preconditioned"], But::PerVector),
     // What a trial begins with is one of these.
-    ("iterate_place", &["starts", "before", "correction", "gaps"], But::Left),
+    ("iterate_place", &["starts", "before", "correction", "facing"], But::Left),
     ("iterate_place", &["iterates"], But::Once),
     // Of prescribed nodes and contact points.
     ("iterate_contact", &["iterates"], But::Left),
@@ -62,9 +62,9 @@ const BUT: &[(&str, &[&str], But)] = &[
     ("iterate_measure", &["iterates"], But::Twice),
     ("iterate_system", &["starts"], But::Left),
     ("iterate_expand", &["starts", "rows"], But::Left),
-    ("iterate_expand", &["correction"], But::Once),
-    // From the second iteration of a step on.
-    ("iterate_unit", &["response"], But::Left),
+    // From the second iteration of a step on, and the frames of contact points.
+    ("iterate_unit", &["response", "rows"], But::Left),
+    ("iterate_press", &["rows"], But::Left),
     ("iterate_commit", &["rows"], But::Left),
 ];
 

@@ -36,11 +36,12 @@ impl<R: DeviceReal> Batch<R> {
     /// [`ComputeError::InvertedMesh`]; the device's fault.
     fn replace(&mut self, case: usize, models: &[CaseModel]) -> Result<bool, ComputeError> {
         let nowhere = || GpuError::Length { what: "the cases of the batch".into(), expected: models.len(), given: case + 1 };
-        let sizes = self.sizes();
+        let (sizes, all) = (self.sizes(), models);
         let group = self.groups.iter().position(|(r, _)| (r.first..r.first + r.count).contains(&case)).ok_or_else(nowhere)?;
         let resident = &mut self.groups[group].0;
         let (models, index) = (&models[resident.first..resident.first + resident.count], case - resident.first);
         let Some(geometry) = resident.replace(&self.context, sizes, index, models)? else { return Ok(false) };
+        self.linear.iter().try_for_each(|linear| linear.face(&self.context, all))?;
         let of_mesh = (geometry, &*models[index].mesh);
         self.tangents.replace(&self.context, sizes, group, models, of_mesh)?;
         if let Some(iterates) = &self.iterates {

@@ -6,7 +6,7 @@ use super::block_plan::BlockPlan;
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
-use super::layout::{COORDINATES, HISTORY, ON_SYMMETRY_PLANE, PARAMETERS, STATE};
+use super::layout::{COORDINATES, FACING, GAP_AND_POSITION, HISTORY, ON_SYMMETRY_PLANE, PARAMETERS, STATE};
 use super::material::flatten;
 use crate::compute::{CaseModel, ComputeError};
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction};
@@ -77,8 +77,12 @@ impl BatchSizes {
     pub fn resident_bytes<R>(&self) -> (u64, u64) {
         let (history, start) = (HISTORY * self.points(), self.start_numbers());
         let widest = history.max(start);
-        let all =
-            history + start + self.geometry_numbers() + self.elements + 3 * self.contact_points + MATERIAL_ROOM * self.bodies();
+        let all = history
+            + start
+            + self.geometry_numbers()
+            + self.elements
+            + (1 + FACING) * self.contact_points
+            + MATERIAL_ROOM * self.bodies();
         ((widest * size_of::<R>()) as u64, (all * size_of::<R>()) as u64)
     }
 }
@@ -155,8 +159,8 @@ pub struct Resident<R> {
     pub(super) plastic_work: StorageBuffer<R>,
     pub(super) weight: StorageBuffer<R>,
     pub(super) friction: StorageBuffer<R>,
-    /// Heights over the plane at the start of the step, and of the undeformed body.
-    pub(super) gaps: StorageBuffer<R>,
+    /// What is known of contact points before they move, as `facing.wgsl` has it.
+    pub(super) facing: StorageBuffer<R>,
 }
 
 impl<R: DeviceReal> Resident<R> {
@@ -197,12 +201,12 @@ impl<R: DeviceReal> Resident<R> {
             anticipated: context.zeros("weights of the last flow", count)?,
             plastic_work: context.zeros("plastic work", count * sizes.elements)?.each(count),
             friction: context.array("coefficients of friction", &friction)?,
-            gaps: context.zeros("gaps at the start of the step, heights", count * 2 * sizes.contact_points)?.each(count),
+            facing: context.zeros("contact points before they move", count * FACING * sizes.contact_points)?.each(count),
         };
         let still = vec![0.0; 3 * sizes.nodes];
         for (index, model) in models.iter().enumerate() {
-            resident.set_heights(context, sizes, index, &model.mesh)?;
-            resident.set_displacement(context, sizes, index, &model.mesh, &still)?;
+            resident.set_undeformed(context, sizes, index, model)?;
+            resident.set_displacement(context, sizes, index, model, &still)?;
         }
         Ok(resident)
     }
@@ -236,8 +240,8 @@ impl<R: DeviceReal> Resident<R> {
         list.clear(&self.anticipated, index, 1)?;
         list.clear(&self.plastic_work, index * sizes.elements, sizes.elements)?;
         list.submit()?;
-        self.set_heights(context, sizes, index, mesh)?;
-        self.set_displacement(context, sizes, index, mesh, &vec![0.0; 3 * sizes.nodes])?;
+        self.set_undeformed(context, sizes, index, &models[index])?;
+        self.set_displacement(context, sizes, index, &models[index], &vec![0.0; 3 * sizes.nodes])?;
         self.geometry_of[index] = geometry as u32;
         Ok(Some(geometry))
     }
@@ -266,8 +270,8 @@ impl<R: DeviceReal> Resident<R> {
         send_geometry(context, sizes, &meshes)
     }
 
-    /// Sends the committed displacement of the group's case `index`, rounded once, and the gaps
-    /// that it leaves, formed in f64.
+    /// Sends the committed displacement of the group's case `index`, rounded once, and the gaps and
+    /// positions of contact points that it leaves, formed in f64.
     ///
     /// # Errors
     /// The device's fault.
@@ -276,24 +280,30 @@ impl<R: DeviceReal> Resident<R> {
         context: &GpuContext,
         sizes: BatchSizes,
         index: usize,
-        mesh: &Mesh,
+        model: &CaseModel,
         displacement: &[f64],
     ) -> Result<(), GpuError> {
         let rounded: Vec<R> = displacement.iter().map(|&u| R::of(u)).collect();
         context.upload_at(&self.start, index * sizes.start_numbers(), &rounded)?;
-        let gaps: Vec<R> = mesh
-            .contact_nodes
-            .iter()
-            .map(|&n| R::of(crate::contact::plane::gap(mesh.nodes[n as usize][2], displacement[3 * n as usize + 2])))
-            .collect();
-        context.upload_at(&self.gaps, 2 * index * sizes.contact_points, &gaps)
+        let moved = gaps_and_positions(model, |n, i| displacement[3 * n + i]);
+        context.upload_at(&self.facing, FACING * index * sizes.contact_points, &moved)
     }
 
-    /// Sends the heights of the contact points of the group's case `index`, undeformed.
-    fn set_heights(&self, context: &GpuContext, sizes: BatchSizes, index: usize, mesh: &Mesh) -> Result<(), GpuError> {
-        let heights: Vec<R> = mesh.contact_nodes.iter().map(|&n| R::of(mesh.nodes[n as usize][2])).collect();
-        context.upload_at(&self.gaps, (2 * index + 1) * sizes.contact_points, &heights)
+    /// Sends gaps and positions of the contact points of the group's case `index`, undeformed, and
+    /// the curvature of its opponent.
+    fn set_undeformed(&self, context: &GpuContext, sizes: BatchSizes, index: usize, model: &CaseModel) -> Result<(), GpuError> {
+        let mut numbers = gaps_and_positions(model, |_, _| 0.0);
+        numbers.resize(numbers.len() + sizes.contact_points, R::of(model.surface.curvature));
+        context.upload_at(&self.facing, (FACING * index + GAP_AND_POSITION) * sizes.contact_points, &numbers)
     }
+}
+
+/// Gaps and positions `[component][point]` of contact points whose nodes have moved so.
+fn gaps_and_positions<R: DeviceReal>(model: &CaseModel, moved: impl Fn(usize, usize) -> f64) -> Vec<R> {
+    let place = |&n: &u32| -> [f64; 3] { std::array::from_fn(|i| model.mesh.nodes[n as usize][i] + moved(n as usize, i)) };
+    let places: Vec<[f64; 3]> = model.mesh.contact_nodes.iter().map(place).collect();
+    let gaps = places.iter().map(|x| R::of(model.surface.gap(x)));
+    gaps.chain((0..3).flat_map(|i| places.iter().map(move |x| R::of(x[i])))).collect()
 }
 
 /// The nodes that elements name and the elements around nodes, with the bits of corners that hang.

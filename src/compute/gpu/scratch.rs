@@ -5,7 +5,7 @@ use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
 use super::kernel::Kernel;
-use super::layout::{COORDINATES, MOST_SLOTS, NEXT_HISTORY, ROWS, STATE, STRESS, TRIAL};
+use super::layout::{COORDINATES, FACED, MOST_SLOTS, NEXT_HISTORY, ROWS, STATE, STRESS, TRIAL};
 use super::pipelines::Bound;
 use super::pools::{PoolBytes, Pools};
 use super::resident::{BatchSizes, Connectivity, Resident};
@@ -132,7 +132,7 @@ impl EvaluationKernels {
             weight: r.weight,
             surface: mesh.surface.partly(mesh.sizes.contact_points),
             friction: r.friction,
-            gaps: r.gaps.partly(mesh.sizes.contact_points),
+            facing: r.facing.partly(FACED * mesh.sizes.contact_points),
             trial: s.contact_trial,
             rows: s.contact_rows,
             codes: s.contact_codes,

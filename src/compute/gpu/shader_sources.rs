@@ -31,8 +31,12 @@ pub const PAIRS: ShaderSource = source!("element/pairs.wgsl");
 const POINT: ShaderSource = source!("element/point.wgsl");
 /// What it is evaluated at, for those who only read that.
 const TRIALS: ShaderSource = source!("element/trials.wgsl");
-/// Gap and slip.
-pub const PLANE: ShaderSource = source!("contact/plane.wgsl");
+/// Frames of surfaces.
+pub const FRAME: ShaderSource = source!("contact/frame.wgsl");
+/// Gap and frame over a rigid surface.
+pub const RIGID: ShaderSource = source!("contact/rigid.wgsl");
+/// What is known of a contact point before it moves.
+pub const FACING: ShaderSource = source!("contact/facing.wgsl");
 /// The contact conditions of a point.
 pub const COULOMB: ShaderSource = source!("contact/coulomb.wgsl");
 
@@ -103,4 +107,4 @@ pub static GATHER_TANGENT_BLOCKS: Kernel =
 
 /// The contact conditions of every point.
 pub static CONTACT_POINTS: Kernel =
-    Kernel::new("contact_points", &[BATCH, PLANE, COULOMB, ROWS, source!("contact/contact_points.wgsl")]);
+    Kernel::new("contact_points", &[BATCH, FRAME, RIGID, FACING, COULOMB, ROWS, source!("contact/contact_points.wgsl")]);

@@ -13,6 +13,7 @@ use crate::bounded;
 use crate::compute::cpu::Cpu;
 use crate::compute::{Call, CaseModel, Compute, ComputeError};
 use crate::contact::coulomb::Friction;
+use crate::contact::rigid::Rigid;
 use crate::material::{Elasticity, FlowStress as Hardening, Material};
 use crate::mesh::brick::brick;
 use serde::{Deserialize, Serialize};
@@ -153,6 +154,7 @@ fn model() -> Result<CaseModel, ComputeError> {
         },
         friction: Friction::Coulomb(0.3),
         opponent: None,
+        surface: Rigid::default(),
     })
 }
 

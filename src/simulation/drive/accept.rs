@@ -5,7 +5,6 @@ use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::Settled;
 use crate::compute::{Energies, Evaluated, Fault};
 use crate::contact::coulomb::Status;
-use crate::contact::plane::gap;
 use crate::simulation::SimulationError;
 use crate::simulation::body_share::given_way;
 use crate::simulation::checkpoint::Increment;
@@ -281,7 +280,8 @@ impl Drive<'_> {
         let mut gaps = Vec::with_capacity(points.len());
         for (point, &node) in points.iter().zip(&self.mesh.contact_nodes) {
             displacement[3 * node as usize..][..3].copy_from_slice(&point.displacement);
-            gaps.push(gap(self.mesh.nodes[node as usize][2], point.displacement[2]));
+            let reference = self.mesh.nodes[node as usize];
+            gaps.push(self.newton.opponent().first_gap(&std::array::from_fn(|i| reference[i] + point.displacement[i])));
         }
         self.is_away = true;
         Taken {

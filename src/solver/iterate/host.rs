@@ -9,7 +9,7 @@ use crate::linalg::{LinalgError, SolverKind};
 use crate::mesh::Mesh;
 use crate::solver::boundary::Boundary;
 use crate::solver::opponent::Opponent;
-use crate::solver::opponent::plane::Plane;
+use crate::solver::opponent::rigid::RigidBody;
 use crate::solver::outcome::{Halt, StepFailure, Worst};
 use crate::solver::phases::PhaseTimes;
 use crate::solver::systems::Systems;
@@ -53,7 +53,7 @@ impl HostIterate {
     pub fn new(mesh: &Mesh, linear: Systems) -> Self {
         Self {
             boundary: Boundary::new(mesh),
-            opponent: Box::new(Plane),
+            opponent: Box::new(RigidBody::default()),
             linear,
             current: Trial::default(),
             candidate: Trial::default(),
@@ -153,10 +153,10 @@ impl HostIterate {
         self.slope(&self.current)
     }
 
-    /// Over a plane, its systems solved with multigrid: what a device that keeps iterates does by
+    /// Over a rigid body, its systems solved with multigrid: what a device that keeps iterates does by
     /// itself.
-    pub fn is_over_plane_by_multigrid(&self) -> bool {
-        self.opponent.is_plane() && self.linear.kind() == SolverKind::Multigrid
+    pub fn is_rigid_by_multigrid(&self) -> bool {
+        self.opponent.is_rigid() && self.linear.kind() == SolverKind::Multigrid
     }
 
     /// Takes the memory of vectors and matrices, if it has not yet: on a device that keeps iterates

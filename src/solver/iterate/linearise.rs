@@ -71,7 +71,7 @@ impl HostIterate {
     fn solve_there(&mut self, case: &mut CaseHandle<'_>, asked: Asked<'_>, times: &mut PhaseTimes) -> Result<There, Halt> {
         let Asked { control, eta, first } = asked;
         let mesh = &case.model().mesh.clone();
-        if !self.is_over_plane_by_multigrid() || !case.backend.about().solves {
+        if !self.is_rigid_by_multigrid() || !case.backend.about().solves {
             return Ok(There::NotSolved { krylov: 0 });
         }
         let mut lap = Lap::start();
@@ -89,6 +89,7 @@ impl HostIterate {
             if first {
                 self.unit_response.fill(0.0);
                 self.unit_response.iter_mut().skip(2).step_by(3).take(self.boundary.own_nodes).for_each(|z| *z = -1.0);
+                self.opponent.contract(&self.current, mesh, &mut self.unit_response);
             }
             // The guess of the first iteration is the measure: see `unit_tolerance`.
             let share = eta.min(UNIT_RESPONSE);
@@ -100,8 +101,9 @@ impl HostIterate {
                 guess: self.unit_response.clone(),
             });
         }
-        let (displacement, rows) = (self.current.u.as_slice().into(), self.current.rows.clone());
-        let system = SolveRequest { displacement, rows, fixed: self.fixed.clone(), sides };
+        let Trial { u, rows, frames, .. } = &self.current;
+        let (rows, frames) = (rows.clone(), frames.clone());
+        let system = SolveRequest { displacement: u.as_slice().into(), rows, frames, fixed: self.fixed.clone(), sides };
         let Solved { outcome, solutions } = case.solve(system)?;
         if solutions.is_empty() {
             return Ok(There::NotSolved { krylov: 0 });

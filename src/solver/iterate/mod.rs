@@ -42,7 +42,7 @@ pub struct SetOut<'a> {
 pub struct Extrapolation {
     /// Share of the last step.
     pub ratio: f64,
-    /// Whether points that come out below the plane are put on it.
+    /// Whether points that have passed the opponent's surface are put on it.
     pub lift: bool,
 }
 

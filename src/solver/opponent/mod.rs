@@ -1,14 +1,13 @@
 //! What the body is pressed against.
 //!
 //! [`Opponent`] is the one list of all that depends on it, from the plan of the linear systems to
-//! friction's work. `plane`, `rigid`, `pair` and `couple` are what there is; `joint` is what the
-//! last two have in common. What is not said of an opponent is as over a plane.
+//! friction's work. `rigid` (a plane or a sphere), `pair` and `couple` are what there is; `joint` is
+//! what the last two have in common. What is not said of an opponent is as over a plane.
 
 pub mod couple;
 pub mod dissipation;
 pub mod joint;
 pub mod pair;
-pub mod plane;
 pub mod rigid;
 
 use std::fmt::Debug;
@@ -66,9 +65,9 @@ pub trait Opponent: Debug + Send + Sync {
         systems.refresh(fixed)
     }
 
-    /// Whether it is the plane: the backend then states the conditions of contact, and a device may
-    /// make whole steps.
-    fn is_plane(&self) -> bool {
+    /// Whether it is rigid: the backend then states the conditions of contact, and a device may make
+    /// whole steps.
+    fn is_rigid(&self) -> bool {
         false
     }
 
@@ -77,7 +76,7 @@ pub trait Opponent: Debug + Send + Sync {
         0..mesh.own_contacts()
     }
 
-    /// Gap of a contact node of the undeformed body at `x`.
+    /// Gap of a contact node of the undeformed body at `x`; over a rigid body of any node there.
     fn first_gap(&self, x: &[f64; 3]) -> f64 {
         x[2]
     }

@@ -17,6 +17,7 @@ use crate::compute::cpu::Cpu;
 use crate::compute::handle::at;
 use crate::compute::{CaseModel, Compute, Energies, Evaluated, Fault};
 use crate::contact::coulomb::{Friction, Status};
+use crate::contact::rigid::Rigid;
 use crate::linalg::{LinearSolver, Pattern, SolverKind};
 use crate::material::hardening::FlowStress;
 use crate::material::{Elasticity, Material};
@@ -51,7 +52,9 @@ impl Rig {
         let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
         let linear = LinearSolver::<f64>::new(SolverKind::Direct, &pattern, &mesh.hierarchy).unwrap();
         let newton = Newton::new(&mesh, linear, settings);
-        let backend = Cpu::new(vec![CaseModel { mesh: mesh.clone(), material, friction, opponent: None }]).unwrap();
+        let backend =
+            Cpu::new(vec![CaseModel { mesh: mesh.clone(), material, friction, opponent: None, surface: Rigid::default() }])
+                .unwrap();
         Self { backend, newton, u: vec![0.0; 3 * mesh.nodes.len()], mesh, h: 0.0, energies: Energies::default() }
     }
 

@@ -48,7 +48,7 @@ pub enum Status {
 pub struct Point<R> {
     /// Internal force of the body on the point, [x, y, z].
     pub force: [R; 3],
-    /// Gap (see [`super::plane::gap`]).
+    /// Gap (see [`super::rigid::Rigid::gap`]).
     pub gap: R,
     /// Slip since the start of the step.
     pub slip: [R; 2],

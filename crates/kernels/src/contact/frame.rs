@@ -3,6 +3,9 @@
 /// Two unit tangents and the unit normal, which points into the body.
 pub type ContactFrame = [[f64; 3]; 3];
 
+/// The frame of the axes.
+pub const AXES: ContactFrame = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
 /// A vector of length one; upward where there is no direction.
 pub fn unit(v: [f64; 3]) -> [f64; 3] {
     let length = v.iter().map(|v| v * v).sum::<f64>().sqrt();

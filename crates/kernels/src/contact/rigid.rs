@@ -1,5 +1,5 @@
 //! A rigid opponent of any curvature: a sphere of radius 1/kappa below the body, its pole at the
-//! origin; for kappa = 0 the plane z = 0.
+//! origin; for kappa = 0 the plane z = 0, with the plane's bits.
 //!
 //! It has no mesh, so nothing of it need be held within a step: gap and frame are those of the
 //! point where it is, in every iteration. The gap is the distance from the sphere, along its normal
@@ -16,7 +16,7 @@
 
 use super::frame::{ContactFrame, frame};
 
-/// A rigid sphere, or a plane.
+/// A rigid sphere, or a plane, which is the default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rigid {
     /// Curvature kappa: one over the radius.
@@ -24,6 +24,11 @@ pub struct Rigid {
 }
 
 impl Rigid {
+    /// Whether it is the plane: its frame is that of the axes everywhere, and its gap z.
+    pub fn is_plane(&self) -> bool {
+        self.curvature == 0.0
+    }
+
     fn root(&self, x: &[f64; 3]) -> f64 {
         let k = self.curvature;
         // The distance from the centre, times kappa; nothing is near the centre.
@@ -44,11 +49,11 @@ impl Rigid {
         [t1, if x[1] == 0.0 { [0.0, 1.0, 0.0] } else { t2 }, n]
     }
 
-    /// Moves a point that has passed the surface back onto it, along its normal.
+    /// What brings a point that has passed the surface back onto it, along its normal.
     pub fn push_out(&self, x: &[f64; 3]) -> [f64; 3] {
         let gap = self.gap(x).min(0.0);
         let [_, _, n] = self.frame(x);
-        std::array::from_fn(|i| x[i] - gap * n[i])
+        n.map(|n| 0.0 - gap * n)
     }
 }
 
@@ -80,7 +85,8 @@ mod tests {
                     (moved([1.0, 0.0, 0.0]) - rigid.gap(&x)).abs() < 1e-11
                         && (moved([0.0, 1.0, 0.0]) - rigid.gap(&x)).abs() < 1e-11
                 );
-                assert!((rigid.gap(&rigid.push_out(&x)) - rigid.gap(&x).max(0.0)).abs() < 1e-14);
+                let out = rigid.push_out(&x);
+                assert!((rigid.gap(&std::array::from_fn(|i| x[i] + out[i])) - rigid.gap(&x).max(0.0)).abs() < 1e-14);
                 let back = from_frame(&frame, &to_frame(&frame, &x));
                 assert!(back.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-15));
             }

@@ -1,5 +1,4 @@
 use super::coulomb::{Friction, Point, Rows, Status, contact_rows};
-use super::plane::{gap, slip};
 
 const MU: f64 = 0.4;
 const C: f64 = 0.1;
@@ -18,8 +17,6 @@ fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 
 #[test]
 fn a_gap_opens_and_closes_a_point() {
-    assert_eq!(gap(0.25, -0.5), -0.25);
-    assert_eq!(slip([0.5, 1.0], [0.25, 1.5]), [0.25, -0.5]);
     // Apart and free of force: nothing is asked.
     let r = rows(&point([0.0; 3], 0.3, [0.1, 0.2]));
     assert_eq!((r.status, r.residual, r.fixed), (Status::Open, [0.0; 3], [false; 3]));

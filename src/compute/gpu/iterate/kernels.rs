@@ -5,6 +5,7 @@ use super::super::buffers::{DeviceReal, Partly};
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
 use super::super::kernel::Kernel;
+use super::super::layout::FACED;
 use super::super::linear::solver::{OfIterates, SlotSolver};
 use super::super::pipelines::Bound;
 use super::super::resident::{Connectivity, Resident};
@@ -111,7 +112,7 @@ impl<R: DeviceReal> BoundTo<'_, R> {
             before: kept.before,
             correction: kept.correction,
             node_info: kept.node_info,
-            gaps: resident.gaps,
+            facing: resident.facing,
             iterates: self.iterates(),
             trials: self.trial(),
         };
@@ -120,7 +121,7 @@ impl<R: DeviceReal> BoundTo<'_, R> {
             weight: resident.weight,
             friction: resident.friction,
             let_go: kept.let_go,
-            gaps: resident.gaps.partly(points),
+            facing: resident.facing.partly(FACED * points),
             iterates: kept.iterates,
             rows: kept.rows,
         };
@@ -149,21 +150,22 @@ impl<R: DeviceReal> BoundTo<'_, R> {
 
     fn of_systems(&self) -> Result<[Bound; 7], GpuError> {
         let Self { solver, kept, told, .. } = self;
-        let OfIterates { rhs, fixed, rows, guess, answer } = *solver;
+        let OfIterates { rhs, fixed, rows: sliding, guess, answer } = *solver;
         let current = args! { iterates: self.iterates(), trials: self.trial() };
-        let system = args! { rhs, is_fixed: fixed, sliding: rows };
+        let system = args! { rhs, is_fixed: fixed, sliding };
         let expand = args! { answer, correction: kept.correction, by_residual: kept.by_residual };
-        let unit = args! { node_info: kept.node_info, is_fixed: fixed, response: kept.response, rhs, guess };
+        let frames = args! { node_info: kept.node_info, rows: kept.rows };
+        let unit = args! { is_fixed: fixed, response: kept.response, rhs, guess };
         let respond = args! { answer, rhs, is_fixed: fixed, response: kept.response };
         let press = args! { response: kept.response, by_residual: kept.by_residual, correction: kept.correction };
         Ok([
             self.bind(&sources::CURRENT, &[&current])?,
             self.bind(&sources::SYSTEM, &[&self.residual(), &system])?,
             self.bind(&sources::EXPAND, &[&self.residual(), &expand])?,
-            self.bind(&sources::UNIT, &[&unit])?,
+            self.bind(&sources::UNIT, &[&frames, &unit])?,
             self.bind(&sources::RESPOND, &[&respond])?,
             self.bind(&sources::DEPTH, &[&args! { corrections: told.corrections, units: told.units }])?,
-            self.bind(&sources::PRESS, &[&press])?,
+            self.bind(&sources::PRESS, &[&frames, &press])?,
         ])
     }
 
@@ -176,7 +178,7 @@ impl<R: DeviceReal> BoundTo<'_, R> {
             starts: resident.start.partly(self.unknowns()),
             rows: kept.rows,
             before: kept.before,
-            gaps: resident.gaps.partly(self.mesh.sizes.contact_points),
+            facing: resident.facing.partly(FACED * self.mesh.sizes.contact_points),
             at_points: told.at_points,
             status: told.status,
         };

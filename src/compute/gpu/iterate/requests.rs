@@ -247,17 +247,10 @@ impl<R: DeviceReal> Gpu<R> {
             let committed = gpu.batch()?.commit_iterates(dispatch, &marks)?;
             for (request, committed) in requests.iter_mut().zip(committed) {
                 gpu.fresh[request.case] = false;
-                let mesh = &gpu.models[request.case].mesh;
-                let count = mesh.contact_nodes.len();
+                let count = committed.status.len();
                 let point = |k: usize| {
                     let vector = |first: usize| std::array::from_fn(|i| committed.at_points[(first + i) * count + k]);
-                    let mut force: [f64; 3] = vector(3);
-                    // The symmetry plane's force is not the contact's.
-                    if mesh.is_on_symmetry_plane(mesh.contact_nodes[k]) {
-                        force[1] = 0.0;
-                    }
-                    let status = status_of(committed.status[k]);
-                    SettledPoint { displacement: vector(0), force, status }
+                    SettledPoint { displacement: vector(0), force: vector(3), status: status_of(committed.status[k]) }
                 };
                 request.answer = Reply::Settled(Settled {
                     outcome: committed.outcome,

@@ -14,7 +14,7 @@ use super::sizes::{CHUNK, RESTART, small_numbers};
 pub struct Arrays {
     /// How the solves stand.
     pub records: StorageBuffer<Record>,
-    /// Contact rows `[slot][slides, force rows, displacement rows][point]`.
+    /// Contact rows `[slot][slides, force rows, displacement rows, frame][point]`.
     pub rows: StorageBuffer<f32>,
     /// Right-hand sides.
     pub rhs: StorageBuffer<f32>,
@@ -57,7 +57,7 @@ impl Arrays {
         let point_of = context.array("contact points by node", &plan.point_of)?.whole();
         let plate = context.array("plate nodes", &plan.plate)?;
         let counts = context.block("sizes of the tangent")?;
-        context.upload(&counts, &[[plan.upper_blocks as u32, plan.contact_points as u32, 0, 0]])?;
+        context.upload(&counts, &[plan.counts()])?;
         let (rhs, solution) = (zeros("right-hand sides", unknowns)?, zeros("solutions", unknowns)?);
         let (guess, answer) = (zeros("guesses", unknowns)?, zeros("answers", unknowns)?);
         let vectors = slots * (RESTART + 1);

@@ -67,6 +67,7 @@ impl LinearKernels {
             rows,
             matrix: level.matrix,
             counts: arrays.counts,
+            column: level.column,
         };
         let dots = || call(&KRYLOV_DOTS, by_chunks, &args! { records, basis, w, partial_sums });
         let orthogonalise = || call(&KRYLOV_ORTHOGONALISE, by_chunks, &args! { records, basis, partial_sums, w, small, squares });

@@ -1,14 +1,15 @@
 //! Systems as the device takes them, and its answers as they are asked for.
 
-use super::super::layout::POINT_ROWS;
+use super::super::layout::{FRAME, POINT_ROWS};
 use super::solver::{Right, SideSolutions};
 use crate::compute::linear::{Side, SideReport, Solution, SolveRequest};
 use crate::contact::coulomb::Status;
+use crate::contact::frame::AXES;
 
 /// The systems of a dispatch, slot by slot.
 #[derive(Debug, Default)]
 pub struct Packed {
-    /// Contact rows `[slot][slides, force rows, displacement rows][point]`.
+    /// Contact rows `[slot][slides, force rows, displacement rows, frame][point]`.
     pub rows: Vec<f32>,
     /// Fixed components `[slot][node]`, a bit each.
     pub fixed: Vec<u32>,
@@ -49,6 +50,12 @@ impl Packed {
                 std::iter::once(&1.0).chain(rows.force_rows.as_flattened()).chain(rows.displacement_rows.as_flattened());
             for (c, &number) in numbers.enumerate() {
                 self.rows[first + c * points + k] = number as f32;
+            }
+        }
+        for k in 0..points {
+            let frame = system.frames.get(k).unwrap_or(&AXES);
+            for (c, &number) in frame.as_flattened().iter().enumerate() {
+                self.rows[first + (POINT_ROWS - FRAME + c) * points + k] = number as f32;
             }
         }
     }

@@ -43,6 +43,11 @@ impl Plan {
         })
     }
 
+    /// Sizes of the tangent, and that no opponent is curved.
+    pub(super) fn counts(&self) -> [u32; 4] {
+        [self.upper_blocks as u32, self.contact_points as u32, 0, 0]
+    }
+
     /// Bytes of a slot's Krylov vectors.
     pub fn krylov_bytes(&self) -> u64 {
         ((2 * RESTART + 1) * 3 * self.layout.levels[0].nodes * size_of::<f32>()) as u64

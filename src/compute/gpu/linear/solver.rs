@@ -11,6 +11,7 @@ use super::kernels::LinearKernels;
 use super::levels::Levels;
 use super::plan::Plan;
 use super::records::{FULL, RUNNING, Record, Solves};
+use crate::compute::CaseModel;
 use crate::compute::linear::SideReport;
 
 /// Krylov iterations of a list that goes on with those that have not finished.
@@ -43,6 +44,8 @@ pub struct SlotSolver {
     pub(super) unknowns: usize,
     /// Numbers of the tangent's upper blocks.
     pub(super) upper_numbers: usize,
+    /// As `assemble.wgsl` has them.
+    counts: [u32; 4],
 }
 
 impl SlotSolver {
@@ -62,7 +65,18 @@ impl SlotSolver {
         let arrays = Arrays::new(context, plan, slots, records)?;
         let kernels = LinearKernels::new(context, plan, (&levels, &arrays), blocks)?;
         let unknowns = 3 * plan.layout.levels[0].nodes;
-        Ok(Self { levels, arrays, kernels, unknowns, upper_numbers: 9 * plan.upper_blocks })
+        Ok(Self { levels, arrays, kernels, unknowns, upper_numbers: 9 * plan.upper_blocks, counts: plan.counts() })
+    }
+
+    /// Has matrices turned into the frames of contact points where a case of the batch has a curved
+    /// opponent: over planes alone there is nothing to turn.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn face(&self, context: &GpuContext, models: &[CaseModel]) -> Result<(), GpuError> {
+        let is_curved = models.iter().any(|model| !model.surface.is_plane());
+        let [blocks, points, ..] = self.counts;
+        context.upload(&self.arrays.counts, &[[blocks, points, u32::from(is_curved), 0]])
     }
 
     /// Appends what makes the hierarchy's matrices from the tangents that are on the device.
