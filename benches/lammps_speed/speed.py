@@ -1,9 +1,10 @@
 """What a contact costs in LAMMPS: this law beside Hertz and Mindlin's and beside MDR, on one packing.
 
-    bash benches/lammps_speed/run.sh OUT [--spheres 100000] [--ranks 2] [--steps 400] [--rounds 3] [--styles ...]
+    bash benches/lammps_speed/run.sh OUT [--spheres 100000] [--ranks 2] [--steps 400] [--rounds 3] [--styles ...] [--rest]
 
 A jittered cubic packing in a periodic box is pressed along z and sheared along x at a constant rate, so that nearly all contacts
-load, slide and turn in each step, most of them plastically: the dear case. All styles have the same spheres, the same neighbour
+load, slide and turn in each step, most of them plastically: the dear case. With --rest it is pressed and sheared before, and
+left to itself while it is timed: spheres ring, most contacts are elastic. All styles have the same spheres, the same neighbour
 lists and the same number of steps. LAMMPS' own account of a run gives the time of `Pair` and of the whole; of the rounds, which
 take turns, the fastest counts. Prints a table: nanoseconds of processor time for each contact and step, its ratio to Hertz and
 Mindlin's and to MDR's, and the ratio of whole steps. Writes OUT/speed.json.
@@ -46,6 +47,7 @@ def input_text(style, args):
     shear = SHEAR * RADIUS / spacing / (args.steps * step)
     k_t = 8 * SHEAR_MODULUS / (2 * (2 - NU)) * 0.05 * RADIUS
     pair = STYLES[style].format(table=args.table, e=MODULUS, nu=NU, y=YIELD, mu=MU, k_t=k_t)
+    stop = f"run {args.steps}\nunfix press\nrun {args.warm}\n" if args.rest else ""
     load = f"plugin load {args.plugin}\n" if style == "asperity" else ""
     return f"""{load}units lj
 atom_style sphere
@@ -72,7 +74,7 @@ thermo_style custom step atoms c_contacts press
 thermo_modify norm no lost error
 thermo {args.steps}
 run {args.warm}
-print "TIMED"
+{stop}print "TIMED"
 run {args.steps}
 """
 
@@ -132,6 +134,7 @@ def main():
     parser.add_argument("--steps", type=int, default=400)
     parser.add_argument("--warm", type=int, default=50)
     parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--rest", action="store_true")
     parser.add_argument("--styles", default=",".join(STYLES))
     args = parser.parse_args()
     args.plugin, args.table = args.plugin.resolve(), args.table.resolve()
@@ -143,7 +146,7 @@ def main():
     styles = args.styles.split(",")
     rounds = [{style: timed(style, args, launcher) for style in styles} for _ in range(args.rounds)]
     best = {style: min((one[style] for one in rounds), key=lambda one: one["pair"]) for style in styles}
-    report = {"spheres": args.spheres, "ranks": args.ranks, "steps": args.steps, "rounds": rounds}
+    report = {"spheres": args.spheres, "ranks": args.ranks, "steps": args.steps, "rest": args.rest, "rounds": rounds}
     (args.out / "speed.json").write_text(json.dumps(report, indent=1) + "\n")
     print(table_of(best, args.steps))
 
