@@ -154,8 +154,8 @@ fn an_unlike_pair_has_the_cpus_history() {
 }
 
 /// Against a rigid sphere each step takes the CPU's iterations at the default tolerance and has its
-/// forces, with friction and without; no vector comes down in them. Of steps in f32 the residual in f64
-/// has the say.
+/// forces, with friction and without; no vector comes down in them. Of steps in f32 the residual in
+/// f64 has the say.
 #[test]
 fn a_rigid_sphere_stays_on_the_device() {
     let Some(_) = device::device("a_rigid_sphere_stays_on_the_device", Precision::F64) else { return };

@@ -20,8 +20,8 @@ impl Bounds {
 
 const CELLS: [usize; 3] = [6, 4, 1];
 
-/// What every third case is pressed against. Bodies are up to some twenty lengths wide, and points are
-/// to come to its surface by moves of which f32 keeps the digits.
+/// What every third case is pressed against. Bodies are up to some twenty lengths wide, and points
+/// are to come to its surface by moves of which f32 keeps the digits.
 const SPHERE: Rigid = Rigid { curvature: 2e-5 };
 
 /// The z at which a point has this gap.

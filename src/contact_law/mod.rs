@@ -27,8 +27,8 @@
 //! `turning`. [`ContactParameters::cohere`] adds the attraction of the surfaces: `cohesion`.
 //!
 //! A step solves F_N G = rho P and F_T = r F_N for the hardening and r by Newton's method with
-//! exact slopes; a step for which that does not find the root is taken in parts, up to 64, and of
-//! these the hardening is bracketed where nothing else does.
+//! exact slopes; where that does not find the root the hardening is bracketed, and a step for which
+//! that finds none either is taken in parts, up to 64.
 //! `benches/law/element.md` has all equations, what fails, and by which term.
 
 pub mod export;

@@ -13,10 +13,10 @@ use super::turning_constants::TurningConstants;
 
 /// Steps of Newton.
 const STEPS: usize = 20;
-/// Parts of a step, at the most, where Newton does not find the way.
-const PARTS: u32 = 64;
-/// Steps of a bracket where no parts do.
+/// Steps of a bracket where Newton does not find the way.
 const BRACKETS: usize = 100;
+/// Parts of a step, at the most, where neither does.
+const PARTS: u32 = 64;
 /// Steps for the ratio at a hardening, greatest one over mu; on the way to it, and of its bracket,
 /// before halves and of halves.
 const RATIOS: usize = 50;
@@ -85,9 +85,9 @@ pub(super) fn moved(table: &Table, state: &ContactState, h: f64, d: [f64; 2]) ->
 /// The same with a twist, or none: its sectors' forces and its vertex after the step, where there
 /// is contact.
 ///
-/// A step that is so long that Newton's method does not find its answer is taken in parts: flow
-/// that fades at full slip may leave it several, and a slower one comes to the right one. The
-/// tangent is that of the last part.
+/// A step that is so long that its answer is not found is taken in parts: flow that fades at full
+/// slip may leave it several, and a slower one comes to the right one. The tangent is that of the
+/// last part.
 pub(super) fn moved_with(table: &Table, state: &ContactState, twist: Option<&Twist>, h: f64, d: [f64; 2]) -> Moved {
     let mut parts = 1;
     loop {
@@ -101,8 +101,8 @@ pub(super) fn moved_with(table: &Table, state: &ContactState, twist: Option<&Twi
 /// State, answer, and of a twist the sectors' forces and the vertex.
 type Moved = (ContactState, ContactResponse, Option<(Sectors, f64)>);
 
-/// A step in so many parts; none where the answer of one was not found. Of [`PARTS`], by a bracket
-/// where nothing else does, they always are.
+/// A step in so many parts; none where the answer of one was not found. Of [`PARTS`] what is
+/// nearest will do.
 fn moved_in(parts: u32, table: &Table, state: &ContactState, twist: Option<&Twist>, h: f64, d: [f64; 2]) -> Option<Moved> {
     let share = 1.0 / f64::from(parts);
     let mut from = *state;
@@ -124,7 +124,7 @@ fn moved_in(parts: u32, table: &Table, state: &ContactState, twist: Option<&Twis
     None
 }
 
-/// A step as it is; none where Newton's method does not find it, unless it is the `last` way.
+/// A step as it is; none where its answer is not found, unless it is the `last` way.
 fn moved_once(table: &Table, state: &ContactState, twist: Option<&Twist>, h: f64, d: [f64; 2], last: bool) -> Option<Moved> {
     let (mut step, released) = begin(table, state, twist, h, d);
     let mut o = Guess::default();
@@ -146,7 +146,12 @@ fn moved_once(table: &Table, state: &ContactState, twist: Option<&Twist>, h: f64
     }
     let (r, factor) = step.begin_flow(&o, trial);
     let guess = step.first_guess(load * factor);
-    let (y, terms) = step.newton(guess, r, &mut o).or_else(|| last.then(|| step.bracket(guess, r, &mut o)))?;
+    let found = step.newton(guess, r, &mut o);
+    let (y, terms) = found.unwrap_or_else(|| step.bracket(guess, r, &mut o));
+    let [a, b, c] = o.residual;
+    if !last && a * a + b * b + c * c > ENOUGH * ENOUGH {
+        return None;
+    }
     if let Some(terms) = &terms {
         step.slopes(terms, &mut o);
     }

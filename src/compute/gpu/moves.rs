@@ -32,7 +32,8 @@ const BUT: &[(&str, &[&str], But)] = &[
     ("gather_node_force", &["element_nodes"], But::Left),
     // The committed state, and not its last flow.
     ("hex8_update", &["history"], But::OneOf(2)),
-    // The contact's rows where points slide and the diagonals for them, columns over a curved opponent.
+    // The contact's rows where points slide and the diagonals for them, columns over a curved
+    // opponent.
     ("assemble", &["diagonal", "rows", "column"], But::Left),
     // What is fixed.
     ("prescribe", &["rhs"], But::Left),

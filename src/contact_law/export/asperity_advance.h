@@ -40,7 +40,7 @@ ASPERITY_FN void asperity_book(const asperity_step *p, const asperity_guess *o, 
     a->unsolved = o->unsolved > a->unsolved ? o->unsolved : a->unsolved;
 }
 
-/* A step in so many parts. Returns whether the answers of all were found; of ASPERITY_PARTS, by a bracket where nothing else does, they always are. */
+/* A step in so many parts. Returns whether the answers of all were found; of ASPERITY_PARTS what is nearest will do. */
 ASPERITY_FN int asperity_move_in(
     const asperity_table *t, int parts, const asperity_work *s, asperity_twist *twist, const asperity_entry *by, int what, asperity_account *a, asperity_work *after,
     asperity_guess *ASPERITY_ALONE o) {
@@ -75,8 +75,8 @@ ASPERITY_FN int asperity_move_in(
     return 1;
 }
 
-/* The update with a twist, or none; its forces around the normal are left there. A step that is so long that Newton's method does not find its answer is taken in parts: flow that fades
- * at full slip may leave it several, and a slower one comes to the right one. The tangent is that of the last part. */
+/* The update with a twist, or none; its forces around the normal are left there. A step that is so long that its answer is not found is taken in parts: flow that fades at full slip may leave
+ * it several, and a slower one comes to the right one. The tangent is that of the last part. */
 ASPERITY_FN void asperity_advance(
     const asperity_table *t, asperity_real radius, asperity_real modulus, const asperity_state *state, asperity_twist *twist, asperity_real h,
     const asperity_real increment[2], asperity_state *next, asperity_response *out, asperity_tangent *tangent) {

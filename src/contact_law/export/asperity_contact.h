@@ -194,8 +194,8 @@ typedef struct asperity_tangent {
 #define ASPERITY_TWIST_MOST @TWIST_MOST@       /* up to here */
 #define ASPERITY_TWIST_YIELD @TWIST_YIELD@     /* what M_twist over that lever counts for yield, beside F_T */
 #define ASPERITY_STEPS 20                      /* of Newton */
-#define ASPERITY_PARTS 64                      /* of a step where that does not find the way, */
-#define ASPERITY_BRACKETS 100                  /* and of a bracket where no parts do */
+#define ASPERITY_BRACKETS 100                  /* where that does not find the way */
+#define ASPERITY_PARTS 64                      /* of a step where neither does */
 #define ASPERITY_TOLERANCE 1e-12               /* of F_N over the yield force and of F_T/F_N */
 
 /* Whether a number is finite, also where the compiler was told that all are. */
@@ -291,7 +291,7 @@ ASPERITY_FN double asperity_exponential(double x);
 #define ASPERITY_TWISTS(p) 0
 #define ASPERITY_KEPT ASPERITY_SOFTENING
 #define ASPERITY_TRIES 8 /* the few contacts that need more are moved by themselves */
-#define ASPERITY_NEAR 1e-9
+#define ASPERITY_NEAR ASPERITY_TOLERANCE
 #define ASPERITY_ENOUGH 0.0
 #define ASPERITY_LOOP ASPERITY_UNROLL
 #if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 8

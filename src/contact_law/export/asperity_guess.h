@@ -131,6 +131,7 @@ ASPERITY_FN asperity_m asperity_evaluate(const asperity_step *p, asperity_v y, c
     asperity_v per;
     int i;
     if (!asperity_any(touches)) {
+        o->residual[0] = o->residual[1] = o->residual[2] = asperity_all(0.0);
         return touches;
     }
     o->reach = o->e;

@@ -510,11 +510,11 @@ ASPERITY_FN asperity_m asperity_move(
 #if ASPERITY_SEVERAL
     (void)start;
 #else
-    if (!found && p->last) {
+    if (!found) {
         y = asperity_bracket(p, guess, start, o);
         load = sqrt(o->residual[0] * o->residual[0] + o->residual[1] * o->residual[1] + o->residual[2] * o->residual[2]);
         o->unsolved = load > 1e-7 ? load : 0.0;
-        found = 1;
+        found = p->last || !(load > 1e-7);
     }
     if (what == ASPERITY_SLOPES) {
         asperity_wear_slopes(p, o);

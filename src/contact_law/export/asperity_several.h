@@ -149,7 +149,7 @@ ASPERITY_FN void asperity_advance_wide(const asperity_table *t, asperity_real mo
 }
 #endif
 
-/* Moves several contacts of one law, each as asperity_update() moves it: by the same equations, to 1e-9 of F_N instead of 1e-12. What one contact gets does not depend on the others, to
+/* Moves several contacts of one law, each as asperity_update() moves it: by the same equations, to rounding. What one contact gets does not depend on the others, to
  * the last bit. With the vectors of the machine several are solved side by side. */
 ASPERITY_FN void asperity_update_many(const asperity_table *t, asperity_real modulus, int count, asperity_increment *increments) {
 #if ASPERITY_WIDTH > 1

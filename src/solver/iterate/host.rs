@@ -153,8 +153,8 @@ impl HostIterate {
         self.slope(&self.current)
     }
 
-    /// Over a rigid body, its systems solved with multigrid: what a device that keeps iterates does by
-    /// itself.
+    /// Over a rigid body, its systems solved with multigrid: what a device that keeps iterates does
+    /// by itself.
     pub fn is_rigid_by_multigrid(&self) -> bool {
         self.opponent.is_rigid() && self.linear.kind() == SolverKind::Multigrid
     }

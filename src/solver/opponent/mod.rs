@@ -1,8 +1,8 @@
 //! What the body is pressed against.
 //!
 //! [`Opponent`] is the one list of all that depends on it, from the plan of the linear systems to
-//! friction's work. `rigid` (a plane or a sphere), `pair` and `couple` are what there is; `joint` is
-//! what the last two have in common. What is not said of an opponent is as over a plane.
+//! friction's work. `rigid` (a plane or a sphere), `pair` and `couple` are what there is; `joint`
+//! is what the last two have in common. What is not said of an opponent is as over a plane.
 
 pub mod couple;
 pub mod dissipation;
@@ -65,8 +65,8 @@ pub trait Opponent: Debug + Send + Sync {
         systems.refresh(fixed)
     }
 
-    /// Whether it is rigid: the backend then states the conditions of contact, and a device may make
-    /// whole steps.
+    /// Whether it is rigid: the backend then states the conditions of contact, and a device may
+    /// make whole steps.
     fn is_rigid(&self) -> bool {
         false
     }
