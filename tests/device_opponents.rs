@@ -68,7 +68,8 @@ shear = 0.004
 
 /// What is told on a device, and on no CPU: what stays on the host.
 const VECTORS: &str = "note: the sphere leaves the x axis or turns, so the vectors of Newton's method stay on the host";
-const SYSTEMS: &str = "note: the sphere is pressed against a body that deforms, so the vectors and linear systems of Newton's method stay on the host";
+const SYSTEMS: &str = "note: the sphere is pressed against a body that deforms, so the vectors and linear systems of \
+                       Newton's method stay on the host";
 const DIRECT: &str = "note: solver.linear is \"direct\", so the vectors and linear systems of Newton's method stay on the host";
 
 fn program(verb: &str, file: &Path, out: &Path, options: &[&str]) {

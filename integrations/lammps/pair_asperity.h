@@ -10,7 +10,7 @@ class PairAsperity : public Pair {
   static constexpr const char *HISTORY = "ASPERITY_HISTORY";
   static constexpr const char *COEFF =
       "pair_coeff I J TABLE E [restitution e] [tangential f] [cohesion W [range Z]] [plane-for-pair] [changed]";
-  static constexpr int BATCH = 64;    // contacts that go through the law together
+  static constexpr int BATCH = ASPERITY_BLOCKS * ASPERITY_TOGETHER;    // contacts that go through the law together
 
   // A contact of the batch: its spheres, its entry in the list, and what it had dissipated.
   struct Entry {

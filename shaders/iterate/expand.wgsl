@@ -4,7 +4,7 @@
 // [slot][component][node], scaled, bits of single precision
 @group(0) @binding(9) var<storage, read> answer: array<u32>;
 @group(0) @binding(10) var<storage, read_write> correction: array<real>;    // [case][3 node + i]
-@group(0) @binding(11) var<storage, read_write> by_residual: array<real>;   // [case][3 node + i]: the unknowns, without a change of h
+@group(0) @binding(11) var<storage, read_write> by_residual: array<real>;   // [case][3 node + i]: unknowns, h as it is
 
 @compute @workgroup_size(64)
 fn iterate_expand(@builtin(global_invocation_id) id: vec3<u32>) {

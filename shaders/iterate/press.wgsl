@@ -3,7 +3,7 @@
 
 @group(0) @binding(5) var<storage, read> node_info: array<u32>;             // [node]
 @group(0) @binding(6) var<storage, read> response: array<u32>;              // [case][component][node], bits of single precision
-@group(0) @binding(7) var<storage, read> by_residual: array<real>;          // [case][3 node + i]: the unknowns, without a change of h
+@group(0) @binding(7) var<storage, read> by_residual: array<real>;          // [case][3 node + i]: unknowns, h as it is
 @group(0) @binding(9) var<storage, read_write> correction: array<real>;     // [case][3 node + i]
 
 @compute @workgroup_size(64)

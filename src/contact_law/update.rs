@@ -15,7 +15,7 @@ use super::turning_constants::TurningConstants;
 const STEPS: usize = 20;
 /// Steps of a bracket where Newton does not find the way.
 const BRACKETS: usize = 100;
-/// Parts of a step, at the most, where neither does.
+/// Parts of a step, at the most, where neither does; `tests/law/unsolved.c` counts what is left.
 const PARTS: u32 = 64;
 /// Steps for the ratio at a hardening, greatest one over mu; on the way to it, and of its bracket,
 /// before halves and of halves.
@@ -34,6 +34,35 @@ const ENOUGH: f64 = 1e-7;
 const HARDLY: f64 = 0.02;
 /// An overlap below this is none: the powers of a smaller one are no numbers any more.
 const LEAST: f64 = 1e-30;
+
+/// A root between two places, by the secant; of a side that stays the excess is halved (the
+/// Illinois method). The excess is above 0 at `low`, below 0 at `high`.
+#[derive(Default)]
+struct Between {
+    low: f64,
+    high: f64,
+    at_low: f64,
+    at_high: f64,
+    side: i32,
+}
+
+impl Between {
+    fn secant(&self) -> f64 {
+        self.high - self.at_high * (self.high - self.low) / (self.at_high - self.at_low)
+    }
+
+    fn narrow(&mut self, place: f64, excess: f64) {
+        if excess > 0.0 {
+            (self.low, self.at_low) = (place, excess);
+            self.at_high *= if self.side == 1 { 0.5 } else { 1.0 };
+            self.side = 1;
+        } else {
+            (self.high, self.at_high) = (place, excess);
+            self.at_low *= if self.side == -1 { 0.5 } else { 1.0 };
+            self.side = -1;
+        }
+    }
+}
 
 /// F_N at an elastic approach of a contact that is wider than its F_N by `stiffened`.
 pub(super) fn elastic_force(row: &Row, e: f64, stiffened: f64) -> f64 {
@@ -361,34 +390,26 @@ impl Step<'_> {
             let terms = self.at_ratio(y, start, o);
             (if terms.is_some() { o.residual[0] } else { -1.0 }, terms)
         };
-        let (mut low, mut at_low) = (0.0, excess(0.0, o).0);
-        let (mut high, mut side) = (guess.max(1e-3 * most), 0);
-        let (mut at_high, mut terms) = excess(high, o);
-        while at_high > 0.0 && high < most {
-            (low, at_low) = (high, at_high);
-            high = (4.0 * high).min(most);
-            (at_high, terms) = excess(high, o);
+        let mut b = Between { at_low: excess(0.0, o).0, high: guess.max(1e-3 * most), ..Between::default() };
+        let mut terms;
+        (b.at_high, terms) = excess(b.high, o);
+        while b.at_high > 0.0 && b.high < most {
+            (b.low, b.at_low) = (b.high, b.at_high);
+            b.high = (4.0 * b.high).min(most);
+            (b.at_high, terms) = excess(b.high, o);
         }
-        let mut y = high;
+        let mut y = b.high;
         for _ in 0..BRACKETS {
-            if !(at_low > 0.0 && at_high < 0.0) || high - low <= 1e-15 * self.depth {
+            if !(b.at_low > 0.0 && b.at_high < 0.0) || b.high - b.low <= 1e-15 * self.depth {
                 break;
             }
-            y = high - at_high * (high - low) / (at_high - at_low);
+            y = b.secant();
             let here;
             (here, terms) = excess(y, o);
             if here.abs() < TOLERANCE {
                 break;
             }
-            if here > 0.0 {
-                (low, at_low) = (y, here);
-                at_high *= if side == 1 { 0.5 } else { 1.0 };
-                side = 1;
-            } else {
-                (high, at_high) = (y, here);
-                at_low *= if side == -1 { 0.5 } else { 1.0 };
-                side = -1;
-            }
+            b.narrow(y, here);
         }
         (y, terms)
     }
@@ -444,34 +465,26 @@ impl Step<'_> {
     /// Flow that fades at full slip may leave several, and a slower step would come to the first.
     fn way(&self, y: f64, r: [f64; 2], e: [f64; 2], size: f64, o: &mut Guess) -> f64 {
         let greatest = self.table.friction * SHORT;
-        let (mut low, mut high, mut at_low, mut at_high) = (0.0, 0.0, size, size);
+        let mut b = Between { at_low: size, at_high: size, ..Between::default() };
         for _ in 0..WAYS {
-            if !(at_high > 0.0) {
+            if !(b.at_high > 0.0) {
                 break;
             }
-            (low, at_low) = (high, at_high);
-            high += (0.2 * at_high).min(greatest).max(0.05 * greatest);
-            at_high = self.along(y, r, e, high, o);
+            (b.low, b.at_low) = (b.high, b.at_high);
+            b.high += (0.2 * b.at_high).min(greatest).max(0.05 * greatest);
+            b.at_high = self.along(y, r, e, b.high, o);
         }
-        let (mut s, mut side) = (high, 0);
+        let mut s = b.high;
         for k in 0..2 * HALVES {
-            if !(high - low > 1e-14) {
+            if !(b.high - b.low > 1e-14) {
                 break;
             }
-            s = if k < HALVES { high - at_high * (high - low) / (at_high - at_low) } else { 0.5 * (low + high) };
+            s = if k < HALVES { b.secant() } else { 0.5 * (b.low + b.high) };
             let here = self.along(y, r, e, s, o);
             if here.abs() < 0.1 * TOLERANCE || here.abs() < 1e-3 * size {
                 break;
             }
-            if here > 0.0 {
-                (low, at_low) = (s, here);
-                at_high *= if side == 1 { 0.5 } else { 1.0 };
-                side = 1;
-            } else {
-                (high, at_high) = (s, here);
-                at_low *= if side == -1 { 0.5 } else { 1.0 };
-                side = -1;
-            }
+            b.narrow(s, here);
         }
         s
     }

@@ -134,7 +134,8 @@ impl Newton {
         let host = &self.iterates.host;
         if !host.opponent().is_rigid() {
             return Some(
-                "the sphere is pressed against a body that deforms, so the vectors and linear systems of Newton's method stay on the host",
+                "the sphere is pressed against a body that deforms, so the vectors and linear systems of Newton's method \
+                 stay on the host",
             );
         }
         if !host.is_rigid_by_multigrid() {

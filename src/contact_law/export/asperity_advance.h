@@ -1,10 +1,5 @@
 /* From a step over R to its answer. No guard: included once. */
 
-/* Forces and energies of a step over E R^2 and E R^3: what was dissipated, and of it by slip. */
-typedef struct asperity_account {
-    double f_n, f_t[2], stored, stiffness, total, slip, unsolved;
-} asperity_account;
-
 /* The answer in the user's units. Returns 0 where it is no number. */
 ASPERITY_FN int asperity_answer(asperity_real radius, asperity_real modulus, const asperity_account *a, asperity_response *out) {
     double force = (double)modulus * (double)radius * (double)radius, work = force * (double)radius, stiff = (double)modulus * (double)radius;
@@ -20,24 +15,6 @@ ASPERITY_FN int asperity_answer(asperity_real radius, asperity_real modulus, con
     out->plastic = ASPERITY_R((a->total - a->slip) * work);
     out->unsolved = ASPERITY_R(a->unsolved);
     return 1;
-}
-
-/* One step into the account. What was done (by the mean of the forces before and after) and is not stored: the sliders' share is friction's, all of it in an elastic step; the rest
- * plastic flow's. */
-ASPERITY_FN void asperity_book(const asperity_step *p, const asperity_guess *o, asperity_account *a) {
-    double total = 0.5 * ((p->old_f_n + o->f_n) * (p->h - p->s->h) + (p->old_f_t[0] + o->f_t[0]) * p->d[0] + (p->old_f_t[1] + o->f_t[1]) * p->d[1]);
-    total -= o->stored - (p->old_stored[0] + p->old_stored[1]);
-    if (!(o->f_n > 0.0) && total < 0.0) {
-        total = 0.0; /* contact was lost within the step */
-    }
-    a->total += total;
-    a->slip += !o->plastic || total < 0.0 || o->friction > total ? total : o->friction > 0.0 ? o->friction : 0.0;
-    a->f_n = o->f_n;
-    a->f_t[0] = o->f_t[0];
-    a->f_t[1] = o->f_t[1];
-    a->stored = o->stored;
-    a->stiffness = o->stiffness;
-    a->unsolved = o->unsolved > a->unsolved ? o->unsolved : a->unsolved;
 }
 
 /* A step in so many parts. Returns whether the answers of all were found; of ASPERITY_PARTS what is nearest will do. */
@@ -61,7 +38,7 @@ ASPERITY_FN int asperity_move_in(
         if (!asperity_move(t, &from, twist ? &turn : NULL, h, d, k < parts ? ASPERITY_FORCES : what, &p, after, o)) {
             return 0;
         }
-        asperity_book(&p, o, a);
+        asperity_account_for(&p, o, a);
         if (twist) {
             memcpy(turn.sector, o->sector, sizeof turn.sector);
             turn.vertex = o->plastic && o->f_n > 0.0 ? o->twist_vertex : turn.vertex;

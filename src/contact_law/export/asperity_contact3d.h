@@ -5,7 +5,8 @@
  * A contact's memory is one asperity_contact: 36 numbers, all zero before first contact; copy it, write it to a restart file as it is, with asperity_fingerprint(&table) beside it.
  * Each step, for each pair that is kept:
  *     asperity_spheres(&law, &i, &j, dt, &contact, &contact, &out);
- * and add out.force_i, out.torque_i, out.force_j, out.torque_j; or asperity_spheres_many() for many pairs of one law, which is faster. With `wall` in place of j: asperity_sphere_wall(). dt = 0 asks for the forces alone, at the same place.
+ * and add out.force_i, out.torque_i, out.force_j, out.torque_j; or asperity_spheres_many() for many pairs of one law, which is faster. With `wall` in place of j:
+ * asperity_sphere_wall(). dt = 0 asks for the forces alone, at the same place.
  *
  * - The tangent frame is carried along: e1 is stored with the contact, turned by the mean spin of the two bodies and laid into the new tangent plane, e2 = n x e1. Any rigid motion of
  *   the pair gives the same forces, if velocities and places are of one time. With those of the middle of the step a turn by the angle a slips by
@@ -188,7 +189,7 @@ ASPERITY_FN asperity_real asperity_allowed(const asperity_real f[2], const asper
 }
 
 /* Contacts in a step, each in a lane: what they see of their bodies, and the answers of the update. */
-typedef struct asperity_meetings {
+typedef struct asperity_block {
     asperity_lanes n[3], v[3], spin_i[3], spin_j[3];       /* n from j to i; v that of i's point of contact relative to j's */
     asperity_lanes radius, mass, overlap, arm_i, arm_j;    /* radius: that of the table's sphere */
     asperity_lanes e1[3], e2[3], axis[2], along[2];        /* frame, and v in it */
@@ -200,10 +201,10 @@ typedef struct asperity_meetings {
     asperity_cohesion joined[ASPERITY_TOGETHER];
     asperity_state state[ASPERITY_TOGETHER]; /* after the update */
     int flags[ASPERITY_TOGETHER];            /* of those that have no answer */
-} asperity_meetings;
+} asperity_block;
 
 /* Two spheres into a lane. */
-ASPERITY_FN void asperity_bring(const asperity_body *i, const asperity_body *j, int l, asperity_meetings *m) {
+ASPERITY_FN void asperity_load_pair(const asperity_body *i, const asperity_body *j, int l, asperity_block *m) {
     int k;
     for (k = 0; k < 3; k++) {
         m->n[k][l] = i->position[k] - j->position[k];
@@ -217,7 +218,7 @@ ASPERITY_FN void asperity_bring(const asperity_body *i, const asperity_body *j, 
 }
 
 /* Normals, lever arms and relative velocities of pairs of spheres. */
-ASPERITY_FN void asperity_meet(const asperity_law3d *law, int count, asperity_meetings *m) {
+ASPERITY_FN void asperity_kinematics(const asperity_law3d *law, int count, asperity_block *m) {
     asperity_real per_radius = (law->table->plane ? ASPERITY_R(1.0) : law->table->share) * law->table->effective_radius;
     int l;
     for (l = 0; l < count; l++) {
@@ -249,7 +250,7 @@ ASPERITY_FN void asperity_meet(const asperity_law3d *law, int count, asperity_me
 }
 
 /* The turn of the frame, and its memory. */
-ASPERITY_INLINE void asperity_turn_of_lane(asperity_meetings *m, int l, asperity_real dt, asperity_real turn[3], asperity_real packed[2]) {
+ASPERITY_INLINE void asperity_turn_of_lane(asperity_block *m, int l, asperity_real dt, asperity_real turn[3], asperity_real packed[2]) {
     turn[0] = ASPERITY_R(0.5) * (m->spin_i[0][l] + m->spin_j[0][l]) * dt;
     turn[1] = ASPERITY_R(0.5) * (m->spin_i[1][l] + m->spin_j[1][l]) * dt;
     turn[2] = ASPERITY_R(0.5) * (m->spin_i[2][l] + m->spin_j[2][l]) * dt;
@@ -258,7 +259,7 @@ ASPERITY_INLINE void asperity_turn_of_lane(asperity_meetings *m, int l, asperity
 }
 
 /* The frame of one lane, whatever it is. */
-ASPERITY_FN void asperity_carry_lane(int l, asperity_real dt, asperity_meetings *m) {
+ASPERITY_FN void asperity_carry_lane(int l, asperity_real dt, asperity_block *m) {
     asperity_real packed[2], turn[3], n[3], e1[3], e2[3];
     asperity_turn_of_lane(m, l, dt, turn, packed);
     asperity_of_lane(m->n, l, n);
@@ -270,7 +271,7 @@ ASPERITY_FN void asperity_carry_lane(int l, asperity_real dt, asperity_meetings 
 }
 
 /* Before the update: the frames, whose memories are in `axis`, and what the points of contact move by in them. */
-ASPERITY_FN void asperity_set_out(const asperity_law3d *law, asperity_real dt, int count, int turning, asperity_meetings *m) {
+ASPERITY_FN void asperity_increments(const asperity_law3d *law, asperity_real dt, int count, int turning, asperity_block *m) {
     asperity_real share = law->table->share;
     asperity_lanes axis[2], odd;
     int l;
@@ -320,7 +321,7 @@ ASPERITY_FN void asperity_set_out(const asperity_law3d *law, asperity_real dt, i
 }
 
 /* The answer of the update into a lane. */
-ASPERITY_INLINE void asperity_take(const asperity_response *answer, int l, asperity_meetings *m) {
+ASPERITY_INLINE void asperity_store_answer(const asperity_response *answer, int l, asperity_block *m) {
     m->f_n[l] = answer->f_n;
     m->f_t[0][l] = answer->f_t[0];
     m->f_t[1][l] = answer->f_t[1];
@@ -332,9 +333,9 @@ ASPERITY_INLINE void asperity_take(const asperity_response *answer, int l, asper
 }
 
 /* The update of one lane. `turning` is NULL where twist and roll are left out, `cohesion` where that is. */
-ASPERITY_FN void asperity_press(
+ASPERITY_FN void asperity_update_lane(
     const asperity_law3d *law, const asperity_state *before, const asperity_turning *turning, asperity_turning *turning_after, const asperity_cohesion *cohesion, int l,
-    asperity_meetings *m) {
+    asperity_block *m) {
     const asperity_real d[2] = {m->d[0][l], m->d[1][l]};
     asperity_real turn[3];
     asperity_response answer;
@@ -349,11 +350,11 @@ ASPERITY_FN void asperity_press(
     if (cohesion) {
         asperity_cohere(&law->cohesion, law->table, m->radius[l], law->modulus, before, &m->state[l], cohesion, d, &m->joined[l], &m->pull[l]);
     }
-    asperity_take(&answer, l, m);
+    asperity_store_answer(&answer, l, m);
 }
 
 /* After the update: the forces, from what it answered. `cohesion`: whether that adds to them. */
-ASPERITY_FN void asperity_act(const asperity_law3d *law, asperity_real dt, int count, int cohesion, asperity_meetings *m) {
+ASPERITY_FN void asperity_block_forces(const asperity_law3d *law, asperity_real dt, int count, int cohesion, asperity_block *m) {
     asperity_real share = law->table->share, damping = law->damping, zero = ASPERITY_R(0.0), damps = damping > zero ? zero : asperity_no_number();
     asperity_lanes factor, bound;
     int l;
@@ -404,8 +405,8 @@ ASPERITY_FN void asperity_act(const asperity_law3d *law, asperity_real dt, int c
 }
 
 /* Forces and memories of one lane. */
-ASPERITY_FN void asperity_settle(
-    const asperity_law3d *law, const asperity_contact *before, asperity_contact *after, int turning, asperity_cohesion *cohesion, int l, const asperity_meetings *m,
+ASPERITY_FN void asperity_store_lane(
+    const asperity_law3d *law, const asperity_contact *before, asperity_contact *after, int turning, asperity_cohesion *cohesion, int l, const asperity_block *m,
     asperity_forces *out) {
     asperity_real share = law->table->share;
     int k;
@@ -467,21 +468,21 @@ ASPERITY_FN int asperity_unanswered(const asperity_law3d *law, asperity_real dis
 ASPERITY_FN void asperity_spheres_cohesive(
     const asperity_law3d *law, const asperity_body *i, const asperity_body *j, asperity_real dt, const asperity_contact *before, asperity_contact *after,
     const asperity_turning *turning, asperity_turning *turning_after, const asperity_cohesion *cohesion, asperity_cohesion *cohesion_after, asperity_forces *out) {
-    asperity_meetings m;
+    asperity_block m;
     int flag;
-    asperity_bring(i, j, 0, &m);
+    asperity_load_pair(i, j, 0, &m);
     m.axis[0][0] = before->axis[0];
     m.axis[1][0] = before->axis[1];
-    asperity_meet(law, 1, &m);
+    asperity_kinematics(law, 1, &m);
     flag = asperity_unanswered(law, m.size[0]);
     if (flag) {
         asperity_no_answer(flag, before, after, out);
         return;
     }
-    asperity_set_out(law, dt, 1, turning != NULL, &m);
-    asperity_press(law, &before->state, turning, turning_after, cohesion, 0, &m);
-    asperity_act(law, dt, 1, cohesion != NULL, &m);
-    asperity_settle(law, before, after, turning != NULL, cohesion ? cohesion_after : NULL, 0, &m, out);
+    asperity_increments(law, dt, 1, turning != NULL, &m);
+    asperity_update_lane(law, &before->state, turning, turning_after, cohesion, 0, &m);
+    asperity_block_forces(law, dt, 1, cohesion != NULL, &m);
+    asperity_store_lane(law, before, after, turning != NULL, cohesion ? cohesion_after : NULL, 0, &m, out);
 }
 
 /* Two spheres of one material that twist and roll on each other. */
@@ -503,7 +504,7 @@ ASPERITY_FN void asperity_sphere_wall_cohesive(
     const asperity_law3d *law, const asperity_body *i, const asperity_wall *wall, asperity_real dt, const asperity_contact *before, asperity_contact *after,
     const asperity_turning *turning, asperity_turning *turning_after, const asperity_cohesion *cohesion, asperity_cohesion *cohesion_after, asperity_forces *out) {
     asperity_real across_i[3], across_wall[3], from[3], distance, arm;
-    asperity_meetings m;
+    asperity_block m;
     int k;
     if (!law->table->plane) {
         asperity_no_answer(ASPERITY_WRONG_TABLE, before, after, out);
@@ -532,10 +533,10 @@ ASPERITY_FN void asperity_sphere_wall_cohesive(
     m.overlap[0] = i->radius - distance;
     m.arm_i[0] = arm;
     m.arm_j[0] = ASPERITY_R(0.0);
-    asperity_set_out(law, dt, 1, turning != NULL, &m);
-    asperity_press(law, &before->state, turning, turning_after, cohesion, 0, &m);
-    asperity_act(law, dt, 1, cohesion != NULL, &m);
-    asperity_settle(law, before, after, turning != NULL, cohesion ? cohesion_after : NULL, 0, &m, out);
+    asperity_increments(law, dt, 1, turning != NULL, &m);
+    asperity_update_lane(law, &before->state, turning, turning_after, cohesion, 0, &m);
+    asperity_block_forces(law, dt, 1, cohesion != NULL, &m);
+    asperity_store_lane(law, before, after, turning != NULL, cohesion ? cohesion_after : NULL, 0, &m, out);
 }
 
 /* A sphere that twists and rolls on a rigid plane. */

@@ -301,6 +301,30 @@ ASPERITY_FN void asperity_elastic_slopes(const asperity_step *p, asperity_guess 
     }
 }
 
+/* A root between two places, by the secant; of a side that stays the excess is halved (the Illinois method). */
+typedef struct asperity_between {
+    double low, high, at_low, at_high; /* the excess is above 0 at `low`, below 0 at `high` */
+    int side;
+} asperity_between;
+
+ASPERITY_FN double asperity_secant(const asperity_between *b) {
+    return b->high - b->at_high * (b->high - b->low) / (b->at_high - b->at_low);
+}
+
+ASPERITY_FN void asperity_narrow(asperity_between *b, double place, double excess) {
+    if (excess > 0.0) {
+        b->low = place;
+        b->at_low = excess;
+        b->at_high *= b->side == 1 ? 0.5 : 1.0;
+        b->side = 1;
+    } else {
+        b->high = place;
+        b->at_high = excess;
+        b->at_low *= b->side == -1 ? 0.5 : 1.0;
+        b->side = -1;
+    }
+}
+
 /* What the ratio lacks, along e, at a way s from r. */
 ASPERITY_FN double asperity_along(const asperity_step *p, double y, const double r[2], const double e[2], double s, asperity_guess *ASPERITY_ALONE o) {
     double at[2];
@@ -311,34 +335,25 @@ ASPERITY_FN double asperity_along(const asperity_step *p, double y, const double
 
 /* The way from r along e to the first ratio that lacks nothing; of r it lacks `size`. Flow that fades at full slip may leave several, and a slower step would come to the first. */
 ASPERITY_FN double asperity_way(const asperity_step *p, double y, const double r[2], const double e[2], double size, asperity_guess *ASPERITY_ALONE o) {
-    double greatest = p->friction / 15.0, low = 0.0, high = 0.0, at_low = size, at_high = size, s;
-    int side = 0, k;
-    for (k = 0; k < 400 && at_high > 0.0; k++) {
-        double step = 0.2 * at_high < greatest ? 0.2 * at_high : greatest;
-        low = high;
-        at_low = at_high;
-        high += step > 0.05 * greatest ? step : 0.05 * greatest;
-        at_high = asperity_along(p, y, r, e, high, o);
+    double greatest = p->friction * ASPERITY_SHORT, s;
+    asperity_between b = {0.0, 0.0, size, size, 0};
+    int k;
+    for (k = 0; k < 400 && b.at_high > 0.0; k++) {
+        double step = 0.2 * b.at_high < greatest ? 0.2 * b.at_high : greatest;
+        b.low = b.high;
+        b.at_low = b.at_high;
+        b.high += step > 0.05 * greatest ? step : 0.05 * greatest;
+        b.at_high = asperity_along(p, y, r, e, b.high, o);
     }
-    s = high;
-    for (k = 0; k < 40 && high - low > 1e-14; k++) {
+    s = b.high;
+    for (k = 0; k < 40 && b.high - b.low > 1e-14; k++) {
         double here;
-        s = k < 20 ? high - at_high * (high - low) / (at_high - at_low) : 0.5 * (low + high);
+        s = k < 20 ? asperity_secant(&b) : 0.5 * (b.low + b.high);
         here = asperity_along(p, y, r, e, s, o);
         if (fabs(here) < 0.1 * ASPERITY_TOLERANCE || fabs(here) < 1e-3 * size) {
             break;
         }
-        if (here > 0.0) {
-            low = s;
-            at_low = here;
-            at_high *= side == 1 ? 0.5 : 1.0;
-            side = 1;
-        } else {
-            high = s;
-            at_high = here;
-            at_low *= side == -1 ? 0.5 : 1.0;
-            side = -1;
-        }
+        asperity_narrow(&b, s, here);
     }
     return s;
 }
@@ -346,7 +361,7 @@ ASPERITY_FN double asperity_way(const asperity_step *p, double y, const double r
 /* What F_N G has over the yield force at a hardening, for the ratio that belongs to it, looked for from that of the start: by Newton's steps where they bring it much nearer, else along
  * what it lacks. */
 ASPERITY_FN double asperity_excess(const asperity_step *p, double y, const double start[2], asperity_guess *ASPERITY_ALONE o) {
-    double r[2] = {start[0], start[1]}, short_of = p->friction / 15.0, lacks[2], x[3], to[2], size, s;
+    double r[2] = {start[0], start[1]}, short_of = p->friction * ASPERITY_SHORT, lacks[2], x[3], to[2], size, s;
     int k;
     for (k = 0; k < 50; k++) {
         if (!asperity_evaluate(p, y, r, o)) {
@@ -389,33 +404,29 @@ ASPERITY_FN double asperity_excess(const asperity_step *p, double y, const doubl
 
 /* The hardening, where Newton does not find the way: r is solved for at each, and what F_N G has over the yield force falls from above zero at 0 to below it. */
 ASPERITY_FN double asperity_bracket(const asperity_step *p, double guess, const double r[2], asperity_guess *ASPERITY_ALONE o) {
-    double most = asperity_most(p), low = 0.0, at_low = asperity_excess(p, 0.0, r, o), high = guess > 1e-3 * most ? guess : 1e-3 * most, at_high = asperity_excess(p, high, r, o), y;
-    int side = 0, k;
-    while (at_high > 0.0 && high < most) {
-        low = high;
-        at_low = at_high;
-        high = 4.0 * high < most ? 4.0 * high : most;
-        at_high = asperity_excess(p, high, r, o);
+    double most = asperity_most(p), y;
+    asperity_between b;
+    int k;
+    b.low = 0.0;
+    b.at_low = asperity_excess(p, b.low, r, o);
+    b.high = guess > 1e-3 * most ? guess : 1e-3 * most;
+    b.at_high = asperity_excess(p, b.high, r, o);
+    b.side = 0;
+    while (b.at_high > 0.0 && b.high < most) {
+        b.low = b.high;
+        b.at_low = b.at_high;
+        b.high = 4.0 * b.high < most ? 4.0 * b.high : most;
+        b.at_high = asperity_excess(p, b.high, r, o);
     }
-    y = high;
-    for (k = 0; k < ASPERITY_BRACKETS && at_low > 0.0 && at_high < 0.0 && high - low > 1e-15 * p->depth; k++) {
+    y = b.high;
+    for (k = 0; k < ASPERITY_BRACKETS && b.at_low > 0.0 && b.at_high < 0.0 && b.high - b.low > 1e-15 * p->depth; k++) {
         double here;
-        y = high - at_high * (high - low) / (at_high - at_low);
+        y = asperity_secant(&b);
         here = asperity_excess(p, y, r, o);
         if (fabs(here) < ASPERITY_TOLERANCE) {
             break;
         }
-        if (here > 0.0) {
-            low = y;
-            at_low = here;
-            at_high *= side == 1 ? 0.5 : 1.0;
-            side = 1;
-        } else {
-            high = y;
-            at_high = here;
-            at_low *= side == -1 ? 0.5 : 1.0;
-            side = -1;
-        }
+        asperity_narrow(&b, y, here);
     }
     return y;
 }
@@ -545,4 +556,25 @@ ASPERITY_FN asperity_m asperity_move(
         o->stiffness = asperity_choose(flows, o->stiffness, elastic[4]);
     }
     return found | asperity_not(flows);
+}
+
+/* Forces and energies of a step over E R^2 and E R^3: what was dissipated, and of it by slip; and what is left of a step that was not solved. */
+typedef struct asperity_account {
+    asperity_v f_n, f_t[2], stored, stiffness, total, slip, unsolved;
+} asperity_account;
+
+/* Adds a step. What was done (by the mean of the forces before and after) and is not stored: the sliders' share is friction's, all of it in an elastic step; the rest plastic flow's. */
+ASPERITY_FN void asperity_account_for(const asperity_step *p, const asperity_guess *o, asperity_account *a) {
+    asperity_v total = 0.5 * ((p->old_f_n + o->f_n) * (p->h - p->s->h) + (p->old_f_t[0] + o->f_t[0]) * p->d[0] + (p->old_f_t[1] + o->f_t[1]) * p->d[1]);
+    asperity_v slip = asperity_choose(o->friction > 0.0, o->friction, asperity_all(0.0));
+    total -= o->stored - (p->old_stored[0] + p->old_stored[1]);
+    total = asperity_choose(asperity_not(o->f_n > 0.0) & (total < 0.0), asperity_all(0.0), total); /* contact was lost within the step */
+    a->total += total;
+    a->slip += asperity_choose(asperity_not(o->plastic) | (total < 0.0) | (o->friction > total), total, slip);
+    a->f_n = o->f_n;
+    a->f_t[0] = o->f_t[0];
+    a->f_t[1] = o->f_t[1];
+    a->stored = o->stored;
+    a->stiffness = o->stiffness;
+    a->unsolved = asperity_choose(o->unsolved > a->unsolved, o->unsolved, a->unsolved);
 }

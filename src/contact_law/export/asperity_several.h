@@ -92,8 +92,9 @@ ASPERITY_FN void asperity_advance_wide(const asperity_table *t, asperity_real mo
     asperity_wide_work s, after;
     asperity_wide_step first;
     asperity_wide_guess o;
-    asperity_wide_v h = asperity_wide_all(0.0), d[2], radius = h, force, total, slip, plastic;
-    asperity_wide_m found, sound, odd;
+    asperity_wide_account a;
+    asperity_wide_v h = asperity_wide_all(0.0), d[2], radius = h, force, work;
+    asperity_wide_m found, sound;
     int k;
     d[0] = d[1] = h;
     for (k = 0; k < ASPERITY_WIDTH; k++) {
@@ -107,35 +108,32 @@ ASPERITY_FN void asperity_advance_wide(const asperity_table *t, asperity_real mo
     asperity_load(before, &s);
     sound = asperity_are_sound(&s);
     found = sound & asperity_wide_move(t, &s, NULL, h, d, what, &first, &after, &o);
-    /* As asperity_book() and asperity_answer(). */
-    found &= asperity_wide_are_finite(o.stored) & asperity_wide_are_finite(o.f_n + o.f_t[0] + o.f_t[1]);
-    total = 0.5 * ((first.old_f_n + o.f_n) * (h - s.h) + (first.old_f_t[0] + o.f_t[0]) * d[0] + (first.old_f_t[1] + o.f_t[1]) * d[1]);
-    total -= o.stored - (first.old_stored[0] + first.old_stored[1]);
-    total = asperity_wide_choose(~(o.f_n > 0.0) & (total < 0.0), asperity_wide_all(0.0), total);
-    slip = asperity_wide_choose(o.friction > 0.0, o.friction, asperity_wide_all(0.0));
-    odd = ~o.plastic | (total < 0.0) | (o.friction > total);
-    slip = asperity_wide_choose(odd, total, slip);
+    a.total = a.slip = a.unsolved = asperity_wide_all(0.0);
+    asperity_wide_account_for(&first, &o, &a);
+    found &= asperity_wide_are_finite(a.stored) & asperity_wide_are_finite(a.f_n + a.f_t[0] + a.f_t[1]);
+    /* In the user's units, as asperity_answer() has them. */
     force = (double)modulus * radius * radius;
-    plastic = (total - slip) * force * radius;
-    slip *= force * radius;
-    o.f_n *= force;
-    o.f_t[0] *= force;
-    o.f_t[1] *= force;
-    o.stored *= force * radius;
-    o.stiffness *= (double)modulus * radius;
+    work = force * radius;
+    a.total = (a.total - a.slip) * work;
+    a.slip *= work;
+    a.f_n *= force;
+    a.f_t[0] *= force;
+    a.f_t[1] *= force;
+    a.stored *= work;
+    a.stiffness *= (double)modulus * radius;
     for (k = 0; k < ASPERITY_WIDTH; k++) {
         next[k] = k < count && found[k] ? which[k]->next : NULL;
     }
     for (k = 0; k < count; k++) {
         asperity_increment *one = which[k];
         if (next[k]) {
-            one->out.f_n = ASPERITY_R(o.f_n[k]);
-            one->out.f_t[0] = ASPERITY_R(o.f_t[0][k]);
-            one->out.f_t[1] = ASPERITY_R(o.f_t[1][k]);
-            one->out.stiffness = ASPERITY_R(o.stiffness[k]);
-            one->out.stored = ASPERITY_R(o.stored[k]);
-            one->out.plastic = ASPERITY_R(plastic[k]);
-            one->out.friction = ASPERITY_R(slip[k]);
+            one->out.f_n = ASPERITY_R(a.f_n[k]);
+            one->out.f_t[0] = ASPERITY_R(a.f_t[0][k]);
+            one->out.f_t[1] = ASPERITY_R(a.f_t[1][k]);
+            one->out.stiffness = ASPERITY_R(a.stiffness[k]);
+            one->out.stored = ASPERITY_R(a.stored[k]);
+            one->out.plastic = ASPERITY_R(a.total[k]);
+            one->out.friction = ASPERITY_R(a.slip[k]);
             one->out.unsolved = ASPERITY_R(0.0);
         } else if (what == ASPERITY_ELASTIC && sound[k]) {
             yields->one[yields->count] = one;

@@ -16,15 +16,14 @@ use super::turning_constants::{LEVERS, LEVERS_SQUARED, TWIST_FOLLOWS, TWIST_LEVE
 const HEADER: &str = include_str!("asperity_contact.h");
 /// What it and others are made of: the update's files are in it twice, for one contact and for
 /// several.
-const PARTS: [(&str, &str); 12] = [
+const PARTS: [(&str, &str); 11] = [
     ("asperity_series.h", include_str!("asperity_series.h")),
     ("asperity_numbers.h", include_str!("asperity_numbers.h")),
     ("asperity_sliders.h", include_str!("asperity_sliders.h")),
     ("asperity_guess.h", include_str!("asperity_guess.h")),
     ("asperity_move.h", include_str!("asperity_move.h")),
     ("asperity_wide.h", include_str!("asperity_wide.h")),
-    ("asperity_wide_names.h", include_str!("asperity_wide_names.h")),
-    ("asperity_wide_end.h", include_str!("asperity_wide_end.h")),
+    ("asperity_wide_names.h", NAMES),
     ("asperity_advance.h", include_str!("asperity_advance.h")),
     ("asperity_several.h", include_str!("asperity_several.h")),
     ("asperity_file.h", include_str!("asperity_file.h")),
@@ -35,6 +34,9 @@ const HEADER_COHESION: &str = include_str!("asperity_cohesion.h");
 const HEADER_FRAME: &str = include_str!("asperity_frame.h");
 const HEADER_3D: &str = include_str!("asperity_contact3d.h");
 const CHECK: &str = include_str!("asperity_contact_check.c");
+
+/// What the update's files call things for several contacts.
+const NAMES: &str = include_str!("asperity_wide_names.h");
 
 /// Name of the update's header, by which others include it.
 pub const HEADER_NAME: &str = "asperity_contact.h";
@@ -60,7 +62,10 @@ pub fn header() -> String {
     ];
     let numbers = numbers.map(|(name, value)| (name, format!("{value:?}")));
     let version = [("VERSION", env!("CARGO_PKG_VERSION").to_owned())];
-    fill(&whole(HEADER), version.into_iter().chain(sizes).chain(numbers).chain(of_a_twist()))
+    let renamed = NAMES.lines().filter_map(|line| line.strip_prefix("#define ")?.split_once(' '));
+    let end = renamed.map(|(name, _)| format!("#undef {name}")).collect::<Vec<_>>().join("\n");
+    let wide_end = [("WIDE_END", end)];
+    fill(&whole(HEADER), wide_end.into_iter().chain(version).chain(sizes).chain(numbers).chain(of_a_twist()))
 }
 
 /// A header with the parts that it includes.

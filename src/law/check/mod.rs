@@ -189,7 +189,7 @@ fn peak(rows: &[StepRecord], whole: impl Fn(&StepRecord) -> f64, force: impl Fn(
 /// Simulates paths and drives the update that the law exports along them, paths side by side; once
 /// `stop` is set, the simulations end after their present step, which their `failure` says.
 ///
-/// # PathErrors
+/// # Errors
 /// The law says nothing of a case; a simulation cannot be set up.
 pub fn check(law: &LawFile, paths: &[Path], stop: &Arc<AtomicBool>) -> Result<Vec<CheckedPath>, LawError> {
     let room = memory::room();
