@@ -222,7 +222,7 @@ static void energy(const asperity_law3d *law) {
 
 /* Many pairs in one call have the forces and memories of each by itself; one whose centres coincide has no answer, and the others do not mind. */
 static void many(asperity_law3d law, int turns, double cohesion) {
-    enum { PAIRS = 21, LOST = 11 };
+    enum { PAIRS = 150, LOST = 71 }; /* more than go in one window, and no multiple of the lanes */
     asperity_body bodies[PAIRS][2];
     asperity_contact each[PAIRS], memory[PAIRS], kept;
     asperity_turning each_turning[PAIRS], turning[PAIRS];
