@@ -33,14 +33,14 @@
 namespace LAMMPS_NS {
 
 constexpr int NUMBERS = sizeof(asperity_contact) / sizeof(double);
-static_assert(NUMBERS == 36, "a contact has 36 numbers");
+static_assert(NUMBERS == 39, "a contact has 39 numbers");
 constexpr int TURNING = sizeof(asperity_turning) / sizeof(double);
 static_assert(TURNING == 61, "a contact that twists and rolls has 61 numbers more");
 constexpr int COHESION = sizeof(asperity_cohesion) / sizeof(double);
 static_assert(COHESION == 7, "a contact with cohesion has 7 numbers more");
 
 // Version of what the plug-in writes to restart files; raised whenever that changes, or what the numbers of a contact mean.
-constexpr double LAYOUT = 5.0;
+constexpr double LAYOUT = 6.0;
 constexpr char MARK[9] = "ASPERITY";
 
 // A law, and what tells it from others.

@@ -37,6 +37,7 @@ pub mod path;
 mod centres;
 mod cohesion;
 mod constants;
+mod hint;
 mod parameters;
 mod prepare;
 mod sectors;

@@ -33,6 +33,11 @@ pub struct ContactState {
     pub vertex: [f64; 2],
     /// Forces of the sliders along the two axes and radial, innermost (last to slip) first.
     pub slider: [[f64; SLIDERS]; 3],
+    /// How the last step that yielded went, from which Newton's method begins; no more hangs on it.
+    /// The share of the way to the elastic trial's ratio that it followed, along the ratio of its
+    /// start and across it; its hardening over what the trial would bring, below zero after a step
+    /// that did not yield.
+    pub hint: [f64; 3],
 }
 
 /// The answer of an increment.
@@ -58,7 +63,7 @@ pub struct ContactResponse {
 
 impl ContactState {
     /// How many numbers it is.
-    pub const NUMBERS: usize = 11 + 3 * SLIDERS;
+    pub const NUMBERS: usize = 14 + 3 * SLIDERS;
 
     /// Its numbers as they lie in memory.
     pub fn to_numbers(self) -> [f64; Self::NUMBERS] {
@@ -78,6 +83,7 @@ impl ContactState {
         let all = |values: &[f64]| values.iter().all(|value| value.is_finite() && value.abs() <= MOST);
         all(&[self.h, self.approach])
             && all(&self.vertex)
+            && all(&self.hint)
             && all(self.slider.as_flattened())
             && all(&[self.h_max, self.hardened, self.reach, self.stiffened])
             && positive(self.h_max)

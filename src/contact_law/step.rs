@@ -77,7 +77,7 @@ pub(super) struct Guess {
 /// What slopes are made of.
 pub(super) struct Terms {
     row: Row,
-    r: [f64; 2],
+    pub(super) r: [f64; 2],
     rate: f64,
     /// r less the vertex, its length, and that rounded.
     x: [f64; 2],

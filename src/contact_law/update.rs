@@ -173,9 +173,12 @@ fn moved_once(table: &Table, state: &ContactState, twist: Option<&Twist>, h: f64
         let sectors = elastic.and_then(|terms| Some((*terms.sectors?, twist?.vertex)));
         return Some((step.keep(&o, h, 0.0, state.softened, released), step.answer(&o, 0.0, tangent), sectors));
     }
+    let trial_load = load * o.factor;
     let (r, factor) = step.begin_flow(&o, trial);
     let guess = step.first_guess(load * factor);
-    let found = step.newton(guess, r, &mut o);
+    let way = step.hinted(trial, r, trial_load);
+    let hinted = way.begin.and_then(|(y, r)| step.newton(y, r, &mut o));
+    let found = hinted.or_else(|| step.newton(guess, r, &mut o));
     let (y, terms) = found.unwrap_or_else(|| step.bracket(guess, r, &mut o));
     let [a, b, c] = o.residual;
     if !last && a * a + b * b + c * c > ENOUGH * ENOUGH {
@@ -186,8 +189,12 @@ fn moved_once(table: &Table, state: &ContactState, twist: Option<&Twist>, h: f64
     }
     let tangent = std::array::from_fn(|j| o.slopes(j, o.solve(o.by[3 + j]).unwrap_or_default()));
     let [softened, released] = step.left_released(&o, y);
+    let mut next = step.keep(&o, h, y, softened, released);
+    if let Some(terms) = &terms {
+        next.hint = way.left(next.hint, y, terms.r, r);
+    }
     let sectors = terms.and_then(|terms| Some((*terms.sectors?, o.twist_vertex)));
-    Some((step.keep(&o, h, y, softened, released), step.answer(&o, y, tangent), sectors))
+    Some((next, step.answer(&o, y, tangent), sectors))
 }
 
 /// F_N and F_T over it that a state holds; none without contact.
@@ -319,7 +326,7 @@ impl Step<'_> {
 
     /// The hardening that brings F_N to the yield force, where the dent and D go on straight and r
     /// stays; `load` is F_N G over the yield force.
-    fn first_guess(&self, load: f64) -> f64 {
+    pub(super) fn first_guess(&self, load: f64) -> f64 {
         let left = (-(load / (self.rho * self.kept())).ln() / self.row.value[GAMMA]).exp();
         let rate = self.row.dent_slope + left * self.approach / self.reach * self.row.approach_slope;
         let y = self.approach * (1.0 - left) / rate;
@@ -516,6 +523,7 @@ impl Step<'_> {
             stiffened: if touches && y > 0.0 { (o.width - 1.0).max(0.0) } else { state.stiffened },
             vertex: if touches && y > 0.0 { o.vertex } else { state.vertex },
             slider: o.forces,
+            hint: [state.hint[0], state.hint[1], -state.hint[2].abs()],
         }
     }
 

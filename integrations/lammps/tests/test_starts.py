@@ -307,7 +307,7 @@ def restarted():
         refuses(again(pair=f"{ELASTIC_PAIR} {E}"), "is another table than the one with which the restart file was written, for spheres")
         refuses(again(floor=f"{1000 * E}"), "was written with 1000, in fix wall/asperity floor for type 1")
         data = file.read_bytes()
-        mark = b"ASPERITY" + struct.pack("d", 5.0)
+        mark = b"ASPERITY" + struct.pack("d", 6.0)
         assert data.count(mark) == 2
         old = Path(name, "old.restart")
         old.write_bytes(data.replace(mark, b"ASPERITY" + struct.pack("d", 2.0)))

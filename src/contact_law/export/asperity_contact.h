@@ -147,8 +147,9 @@ typedef struct asperity_state {
     asperity_real stiffened;  /* g - 1: by what the contact is wider than its F_N, as shear took F_N and left its radius */
     asperity_real vertex[2];
     asperity_real slider[3][ASPERITY_SLIDERS]; /* forces along the two axes, and radial */
+    asperity_real hint[3];    /* how the last step that yielded went: where Newton's method begins, no more */
 } asperity_state;
-#define ASPERITY_NUMBERS (11 + 3 * ASPERITY_SLIDERS) /* of a memory */
+#define ASPERITY_NUMBERS (14 + 3 * ASPERITY_SLIDERS) /* of a memory */
 
 /* What a contact that twists or rolls remembers besides; all zero before first contact. Forces over E R^2, moments over E R^3. */
 typedef struct asperity_turning {
@@ -197,6 +198,7 @@ typedef struct asperity_tangent {
 #define ASPERITY_BRACKETS 100                  /* where that does not find the way */
 #define ASPERITY_PARTS 64                      /* of a step where neither does (tests/law/unsolved.c counts what is left) */
 #define ASPERITY_SHORT (1.0 / 15.0)            /* greatest step over mu on the way to a ratio (the same) */
+#define ASPERITY_HINT_SHORT 0.06               /* way to the trial's ratio over mu, up to which a step begins where the last one had it */
 #define ASPERITY_TOLERANCE 1e-12               /* of F_N over the yield force and of F_T/F_N */
 
 /* Whether a number is finite, also where the compiler was told that all are. */
@@ -331,6 +333,7 @@ ASPERITY_FN void asperity_begin(const asperity_state *from, asperity_work *to) {
             to->slider[j][i] = (double)from->slider[j][i];
         }
         to->slider[j][ASPERITY_SLIDERS] = 0.0;
+        to->hint[j] = (double)from->hint[j];
     }
 }
 
@@ -363,6 +366,7 @@ ASPERITY_FN void asperity_end(const asperity_work *from, asperity_state *to) {
         for (i = 0; i < ASPERITY_SLIDERS; i++) {
             to->slider[j][i] = ASPERITY_R(from->slider[j][i]);
         }
+        to->hint[j] = ASPERITY_R(from->hint[j]);
     }
 }
 
@@ -375,7 +379,7 @@ ASPERITY_FN int asperity_is_sound(const asperity_state *s) {
         sum += s->slider[0][i] + s->slider[1][i] + s->slider[2][i];
     }
     /* A sum is finite only if all that it is made of are. */
-    return asperity_is_finite(s->h) && asperity_is_finite(s->approach) && asperity_is_finite(sum + (s->vertex[0] + s->vertex[1])) &&
+    return asperity_is_finite(s->h) && asperity_is_finite(s->approach) && asperity_is_finite(sum + (s->vertex[0] + s->vertex[1]) + (s->hint[0] + s->hint[1] + s->hint[2])) &&
            asperity_is_finite(s->h_max + s->hardened + s->reach + s->softened + s->released + s->worn + s->stiffened) && s->h_max >= zero && s->hardened >= zero &&
            s->reach >= zero && s->softened >= zero && s->softened < one && s->released >= zero && s->released <= one && s->worn >= zero &&
            s->worn <= ASPERITY_R(2.0) && s->stiffened >= zero;

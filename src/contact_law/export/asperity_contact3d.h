@@ -2,7 +2,7 @@
  *
  * Once, for each pair of materials and for each material and wall; what does not fit together is refused here, with a code (ASPERITY_LAW_...):
  *     asperity_pair_law(&law, &table, E, restitution) != 0 || asperity_wall_law(&wall_law, &wall_table, E, restitution) != 0
- * A contact's memory is one asperity_contact: 36 numbers, all zero before first contact; copy it, write it to a restart file as it is, with asperity_fingerprint(&table) beside it.
+ * A contact's memory is one asperity_contact: 39 numbers, all zero before first contact; copy it, write it to a restart file as it is, with asperity_fingerprint(&table) beside it.
  * Each step, for each pair that is kept:
  *     asperity_spheres(&law, &i, &j, dt, &contact, &contact, &out);
  * and add out.force_i, out.torque_i, out.force_j, out.torque_j; or asperity_spheres_many() for many pairs of one law, which is faster. With `wall` in place of j:

@@ -66,7 +66,7 @@ ASPERITY_FN int asperity_may_forget_cohesive(const asperity_contact *contact, co
 #define ASPERITY_BLOCKS 1
 #else
 #define ASPERITY_TOGETHER 8
-#define ASPERITY_BLOCKS 8
+#define ASPERITY_BLOCKS 16
 #endif
 
 typedef asperity_real asperity_lanes[ASPERITY_TOGETHER];

@@ -79,6 +79,7 @@ ASPERITY_FN void asperity_keep(
         for (i = 0; i < ASPERITY_CELLS; i++) {
             asperity_put(which, next->slider[j][i], o->slider[j][i]);
         }
+        asperity_put(which, next->hint[j], j < 2 ? s->hint[j] : -asperity_size(s->hint[j]));
     }
 }
 
@@ -199,6 +200,38 @@ ASPERITY_FN asperity_v asperity_first_guess(const asperity_step *p, asperity_v l
     left = asperity_exponential(-asperity_logarithm(load / (p->rho * p->kept)) / gamma);
     y = p->e * (1.0 - left) / (p->row.dent_slope + left * p->e / p->approach * p->row.approach_slope);
     return asperity_choose(y > 0.0, asperity_choose(y < most, y, most), asperity_all(0.0));
+}
+
+/* Where Newton's method begins in a short step of a contact that has yielded before: as far on the way to the trial's ratio as in its last step that yielded, along the ratio of the
+ * start and across it, and with as much of the hardening that the trial would bring. Returns of which contacts; y and r of the others stay. */
+ASPERITY_FN asperity_m asperity_hinted(asperity_step *p, const asperity_v trial[2], asperity_v *y, asperity_v r[2]) {
+    const asperity_v *hint = p->s->hint;
+    asperity_v per = 1.0 / asperity_root(r[0] * r[0] + r[1] * r[1] + 1e-200), x = trial[0] - r[0], z = trial[1] - r[1], along, across;
+    asperity_m hinted = (asperity_size(hint[2]) > 0.0) & (p->old_f_n > 0.0) & (x * x + z * z < ASPERITY_HINT_SHORT * ASPERITY_HINT_SHORT * p->friction * p->friction);
+    p->axis[0] = r[0] * per;
+    p->axis[1] = r[1] * per;
+    p->toward[0] = x * p->axis[0] + z * p->axis[1];
+    p->toward[1] = z * p->axis[0] - x * p->axis[1];
+    p->trial = asperity_first_guess(p, p->trial);
+    along = hint[0] * p->toward[0];
+    across = hint[1] * p->toward[1];
+    asperity_put(hinted, r[0], r[0] + (along * p->axis[0] - across * p->axis[1]));
+    asperity_put(hinted, r[1], r[1] + (along * p->axis[1] + across * p->axis[0]));
+    asperity_put(hinted, *y, asperity_size(hint[2]) * p->trial);
+    return hinted;
+}
+
+/* A number within bounds, and the lower one where it is none. */
+ASPERITY_FN asperity_v asperity_within(asperity_v x, double least, double most) {
+    return asperity_choose(x > least, asperity_choose(x < most, x, asperity_all(most)), asperity_all(least));
+}
+
+/* The hint that a step leaves which yielded, from the ratio at its start. What hardly moved one way says nothing of it. */
+ASPERITY_FN void asperity_keep_hint(const asperity_step *p, asperity_m flows, asperity_v y, const asperity_v r[2], const asperity_v start[2], asperity_work *next) {
+    asperity_v x = r[0] - start[0], z = r[1] - start[1], along = p->toward[0] * p->toward[0], across = p->toward[1] * p->toward[1], least = 0.01 * (along + across);
+    asperity_put(flows & (along > least), next->hint[0], asperity_within((x * p->axis[0] + z * p->axis[1]) / p->toward[0], -2.0, 2.0));
+    asperity_put(flows & (across > least), next->hint[1], asperity_within((z * p->axis[0] - x * p->axis[1]) / p->toward[1], -2.0, 2.0));
+    asperity_put(flows, next->hint[2], asperity_within(y / p->trial, 0.01, 10.0));
 }
 
 /* The sliders' exponent when it is sheared so far. */
@@ -461,8 +494,8 @@ ASPERITY_FN void asperity_solution_slopes(const asperity_step *p, asperity_guess
 ASPERITY_FN asperity_m asperity_move(
     const asperity_table *t, const asperity_work *s, const asperity_twist *twist, asperity_v h, const asperity_v d[2], int what, asperity_step *p, asperity_work *next,
     asperity_guess *ASPERITY_ALONE o) {
-    asperity_v softening, released, r[2], start[2], y, guess, gamma, load, factor, elastic[5], none = asperity_all(0.0);
-    asperity_m touches, flows, found;
+    asperity_v softening, released, r[2], start[2], trial[2], y, guess, gamma, load, factor, elastic[5], none = asperity_all(0.0);
+    asperity_m touches, flows, found, hinted;
     int i;
     p->twist = twist;
     asperity_prepare(t, s, h, d, p);
@@ -511,16 +544,26 @@ ASPERITY_FN asperity_m asperity_move(
     elastic[4] = o->stiffness;
     p->radial = asperity_column(t, &p->row, ASPERITY_RADIAL_SLIP);
     p->sudden = asperity_column(t, &p->row, ASPERITY_SUDDEN);
+    trial[0] = r[0];
+    trial[1] = r[1];
+    p->trial = load * o->factor;
     factor = asperity_grow_from(p, softening, o->factor, o->cell, r);
     p->rho_log = asperity_choose(p->rho < 1.0 - 1e-12, -1.0 / asperity_logarithm(p->rho), none);
     p->sum = asperity_limits(p->lost, asperity_all(1.0), p->limit);
     y = guess = asperity_first_guess(p, load * factor);
     start[0] = r[0];
     start[1] = r[1];
+    hinted = asperity_hinted(p, trial, &y, r);
     found = asperity_newton(p, flows, &y, r, o);
 #if ASPERITY_SEVERAL
-    (void)start;
+    (void)hinted;
 #else
+    if (!found && hinted) {
+        y = guess;
+        r[0] = start[0];
+        r[1] = start[1];
+        found = asperity_newton(p, flows, &y, r, o);
+    }
     if (!found) {
         y = asperity_bracket(p, guess, start, o);
         load = sqrt(o->residual[0] * o->residual[0] + o->residual[1] * o->residual[1] + o->residual[2] * o->residual[2]);
@@ -547,6 +590,7 @@ ASPERITY_FN asperity_m asperity_move(
         load = asperity_choose(touches, asperity_choose(guess > 0.0, guess, none), load);
     }
     asperity_keep(p, o, flows, flows, y, load, released, next);
+    asperity_keep_hint(p, flows, y, o->r, start, next);
     if (ASPERITY_SEVERAL) {
         o->f_n = asperity_choose(flows, o->f_n, elastic[0]);
         for (i = 0; i < 2; i++) {

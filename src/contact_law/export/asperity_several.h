@@ -15,12 +15,13 @@ ASPERITY_FN void asperity_load(const asperity_state *const from[ASPERITY_WIDTH],
     int i, k;
 #ifdef ASPERITY_TRANSPOSES
     for (i = 0; i < ASPERITY_NUMBERS; i += 8) {
+        const int count = ASPERITY_NUMBERS - i < 8 ? ASPERITY_NUMBERS - i : 8;
         __m512d x[8];
         for (k = 0; k < 8; k++) {
-            x[k] = _mm512_loadu_pd(&from[k]->h + i);
+            x[k] = _mm512_maskz_loadu_pd((__mmask8)((1 << count) - 1), &from[k]->h + i);
         }
         asperity_transpose(x);
-        for (k = 0; k < 8; k++) {
+        for (k = 0; k < count; k++) {
             at[i + k] = (asperity_wide_v)x[k];
         }
     }
@@ -39,14 +40,15 @@ ASPERITY_FN void asperity_unload(const asperity_wide_work *from, asperity_state 
     int i, k;
 #ifdef ASPERITY_TRANSPOSES
     for (i = 0; i < ASPERITY_NUMBERS; i += 8) {
+        const int count = ASPERITY_NUMBERS - i < 8 ? ASPERITY_NUMBERS - i : 8;
         __m512d x[8];
         for (k = 0; k < 8; k++) {
-            x[k] = (__m512d)at[i + k];
+            x[k] = (__m512d)at[i + (k < count ? k : 0)];
         }
         asperity_transpose(x);
         for (k = 0; k < 8; k++) {
             if (to[k]) {
-                _mm512_storeu_pd(&to[k]->h + i, x[k]);
+                _mm512_mask_storeu_pd(&to[k]->h + i, (__mmask8)((1 << count) - 1), x[k]);
             }
         }
     }
@@ -65,7 +67,7 @@ ASPERITY_FN void asperity_unload(const asperity_wide_work *from, asperity_state 
 
 /* Of which contacts the memory is one that the update may have left: see asperity_is_sound(). */
 ASPERITY_FN asperity_wide_m asperity_are_sound(const asperity_wide_work *s) {
-    asperity_wide_v sum = s->vertex[0] + s->vertex[1], others = s->h_max + s->hardened + s->reach + s->softened + s->released + s->worn + s->stiffened;
+    asperity_wide_v sum = s->vertex[0] + s->vertex[1] + s->hint[0] + s->hint[1] + s->hint[2], others = s->h_max + s->hardened + s->reach + s->softened + s->released + s->worn + s->stiffened;
     int i;
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
         sum += s->slider[0][i] + s->slider[1][i] + s->slider[2][i];
@@ -77,16 +79,16 @@ ASPERITY_FN asperity_wide_m asperity_are_sound(const asperity_wide_work *s) {
 
 /* Contacts that wait for their lanes. */
 typedef struct asperity_queue {
-    asperity_increment *one[ASPERITY_WIDTH];
-    asperity_entry by[ASPERITY_WIDTH];
+    asperity_increment *one[2 * ASPERITY_WIDTH]; /* those of a second group come behind the first */
+    asperity_entry by[2 * ASPERITY_WIDTH];
     int count;
 } asperity_queue;
 
-/* Moves those that wait side by side; where `what` is ASPERITY_ELASTIC, those that yield go into the queue `yields`, which has room. */
+/* Moves the first of those that wait, side by side; where `what` is ASPERITY_ELASTIC, those that yield go into the queue `yields`, which has room. */
 ASPERITY_FN void asperity_advance_wide(const asperity_table *t, asperity_real modulus, int what, asperity_queue *queue, asperity_queue *yields) {
     asperity_increment *const *which = queue->one;
     const asperity_entry *by = queue->by;
-    const int count = queue->count;
+    const int count = queue->count < ASPERITY_WIDTH ? queue->count : ASPERITY_WIDTH;
     const asperity_state *before[ASPERITY_WIDTH];
     asperity_state *next[ASPERITY_WIDTH];
     asperity_wide_work s, after;
@@ -143,7 +145,11 @@ ASPERITY_FN void asperity_advance_wide(const asperity_table *t, asperity_real mo
         }
     }
     asperity_unload(&after, next);
-    queue->count = 0;
+    queue->count -= count;
+    for (k = 0; k < queue->count; k++) {
+        queue->one[k] = queue->one[count + k];
+        queue->by[k] = queue->by[count + k];
+    }
 }
 #endif
 
@@ -151,30 +157,31 @@ ASPERITY_FN void asperity_advance_wide(const asperity_table *t, asperity_real mo
  * the last bit. With the vectors of the machine several are solved side by side. */
 ASPERITY_FN void asperity_update_many(const asperity_table *t, asperity_real modulus, int count, asperity_increment *increments) {
 #if ASPERITY_WIDTH > 1
-    /* Those that are whole mostly yield, and those that are released mostly do not. */
-    asperity_queue whole, released, yields;
-    int k, i;
-    whole.count = released.count = yields.count = 0;
+    /* Those that are whole mostly yield; of those that are released, such as yielded in their last step. */
+    asperity_queue whole, flowing, released;
+    int k;
+    whole.count = flowing.count = released.count = 0;
     for (k = 0; k < count; k++) {
         asperity_increment *one = &increments[k];
-        asperity_queue *queue = one->state->approach < one->state->reach ? &released : &whole;
+        asperity_queue *queue = !(one->state->approach < one->state->reach) ? &whole : one->state->hint[2] > ASPERITY_R(0.0) ? &flowing : &released;
         if (asperity_enter(one->radius, one->state, 1, one->h, one->d, one->next, &one->out, NULL, &queue->by[queue->count])) {
             queue->one[queue->count++] = one;
         }
         if (whole.count == ASPERITY_WIDTH) {
             asperity_advance_wide(t, modulus, ASPERITY_FORCES, &whole, NULL);
         }
-        if (released.count == ASPERITY_WIDTH || (k + 1 == count && released.count > 0)) {
-            asperity_advance_wide(t, modulus, ASPERITY_ELASTIC, &released, &yields);
+        if (released.count == ASPERITY_WIDTH) {
+            asperity_advance_wide(t, modulus, ASPERITY_ELASTIC, &released, &flowing);
         }
-        for (i = 0; i < yields.count; i++) {
-            whole.one[whole.count] = yields.one[i];
-            whole.by[whole.count++] = yields.by[i];
-            if (whole.count == ASPERITY_WIDTH) {
-                asperity_advance_wide(t, modulus, ASPERITY_FORCES, &whole, NULL);
-            }
+        if (flowing.count >= ASPERITY_WIDTH) {
+            asperity_advance_wide(t, modulus, ASPERITY_FORCES, &flowing, NULL);
         }
-        yields.count = 0;
+    }
+    if (released.count > 0) {
+        asperity_advance_wide(t, modulus, ASPERITY_ELASTIC, &released, &flowing);
+    }
+    while (flowing.count > 0) {
+        asperity_advance_wide(t, modulus, ASPERITY_FORCES, &flowing, NULL);
     }
     if (whole.count > 0) {
         asperity_advance_wide(t, modulus, ASPERITY_FORCES, &whole, NULL);

@@ -25,9 +25,11 @@
 #define asperity_grow_from asperity_wide_grow_from
 #define asperity_guess asperity_wide_guess
 #define asperity_guess_slopes asperity_wide_guess_slopes
+#define asperity_hinted asperity_wide_hinted
 #define asperity_i asperity_wide_i
 #define asperity_inverse_root asperity_wide_inverse_root
 #define asperity_keep asperity_wide_keep
+#define asperity_keep_hint asperity_wide_keep_hint
 #define asperity_limits asperity_wide_limits
 #define asperity_log_near asperity_wide_log_near
 #define asperity_log_series asperity_wide_log_series
@@ -63,6 +65,7 @@
 #define asperity_v asperity_wide_v
 #define asperity_wear asperity_wide_wear
 #define asperity_whole asperity_wide_whole
+#define asperity_within asperity_wide_within
 #define asperity_work asperity_wide_work
 #define asperity_worn_slopes asperity_wide_worn_slopes
 #define asperity_yield asperity_wide_yield

@@ -47,6 +47,7 @@ class State(ctypes.Structure):
         *((name, ctypes.c_double) for name in ("h", "h_max", "approach", "hardened", "reach", "softened", "released", "worn", "stiffened")),
         ("vertex", ctypes.c_double * 2),
         ("slider", ctypes.c_double * SLIDERS * 3),
+        ("hint", ctypes.c_double * 3),
     ]
 
     def copy(self):
