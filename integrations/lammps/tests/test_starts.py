@@ -312,7 +312,7 @@ def restarted():
         old = Path(name, "old.restart")
         old.write_bytes(data.replace(mark, b"ASPERITY" + struct.pack("d", 2.0)))
         refuses(again(kept=old), "contacts are of another version of the plug-in")
-        old.write_bytes(data.replace(mark + struct.pack("d", 36.0), mark + struct.pack("d", 37.0)))
+        old.write_bytes(data.replace(mark + struct.pack("d", 39.0), mark + struct.pack("d", 40.0)))
         refuses(again(kept=old), "contacts are of another version of the plug-in")
         lmp = quiet()
         lmp.commands_string(HEAD + again(pair=f"{PAIR} {2 * E} changed", floor=f"{2 * E} changed"))
