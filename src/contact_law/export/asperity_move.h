@@ -325,12 +325,18 @@ ASPERITY_FN void asperity_narrow(asperity_between *b, double place, double exces
     }
 }
 
+/* The answer at a guess of a bracket. */
+ASPERITY_FN int asperity_counted(const asperity_step *p, double y, const double r[2], asperity_guess *ASPERITY_ALONE o) {
+    o->tries -= o->tries > 0;
+    return asperity_evaluate(p, y, r, o);
+}
+
 /* What the ratio lacks, along e, at a way s from r. */
 ASPERITY_FN double asperity_along(const asperity_step *p, double y, const double r[2], const double e[2], double s, asperity_guess *ASPERITY_ALONE o) {
     double at[2];
     at[0] = r[0] + s * e[0];
     at[1] = r[1] + s * e[1];
-    return asperity_evaluate(p, y, at, o) ? o->residual[1] * e[0] + o->residual[2] * e[1] : -1.0;
+    return asperity_counted(p, y, at, o) ? o->residual[1] * e[0] + o->residual[2] * e[1] : -1.0;
 }
 
 /* The way from r along e to the first ratio that lacks nothing; of r it lacks `size`. Flow that fades at full slip may leave several, and a slower step would come to the first. */
@@ -364,7 +370,7 @@ ASPERITY_FN double asperity_excess(const asperity_step *p, double y, const doubl
     double r[2] = {start[0], start[1]}, short_of = p->friction * ASPERITY_SHORT, lacks[2], x[3], to[2], size, s;
     int k;
     for (k = 0; k < 50; k++) {
-        if (!asperity_evaluate(p, y, r, o)) {
+        if (!asperity_counted(p, y, r, o)) {
             return -1.0;
         }
         lacks[0] = o->residual[1];
@@ -373,13 +379,16 @@ ASPERITY_FN double asperity_excess(const asperity_step *p, double y, const doubl
         if (size < ASPERITY_TOLERANCE) {
             return o->residual[0];
         }
+        if (o->tries == 0) {
+            break;
+        }
         if (k > 0) {
             asperity_guess_slopes(p, 3, 1, o);
             x[1] = x[2] = 0.0;
             asperity_solve_at(o, 1, 0.0, x);
             to[0] = r[0] + x[1];
             to[1] = r[1] + x[2];
-            if (x[1] * x[1] + x[2] * x[2] < short_of * short_of && asperity_evaluate(p, y, to, o) &&
+            if (x[1] * x[1] + x[2] * x[2] < short_of * short_of && asperity_counted(p, y, to, o) &&
                 o->residual[1] * o->residual[1] + o->residual[2] * o->residual[2] < 0.04 * size * size) {
                 r[0] = to[0];
                 r[1] = to[1];
@@ -395,11 +404,17 @@ ASPERITY_FN double asperity_excess(const asperity_step *p, double y, const doubl
     /* Slowly from the start, where that comes to no end: there is an answer, as no ratio is beyond mu. */
     r[0] = start[0];
     r[1] = start[1];
-    for (k = 0; k < 600 && asperity_evaluate(p, y, r, o) && o->residual[1] * o->residual[1] + o->residual[2] * o->residual[2] > 1e-20; k++) {
+    for (k = 0; k < 600; k++) {
+        if (!asperity_counted(p, y, r, o)) {
+            return -1.0;
+        }
+        if (!(o->residual[1] * o->residual[1] + o->residual[2] * o->residual[2] > 1e-20) || o->tries == 0) {
+            return o->residual[0];
+        }
         r[0] += 0.05 * o->residual[1];
         r[1] += 0.05 * o->residual[2];
     }
-    return asperity_evaluate(p, y, r, o) ? o->residual[0] : -1.0;
+    return asperity_counted(p, y, r, o) ? o->residual[0] : -1.0;
 }
 
 /* The hardening, where Newton does not find the way: r is solved for at each, and what F_N G has over the yield force falls from above zero at 0 to below it. */
@@ -409,17 +424,20 @@ ASPERITY_FN double asperity_bracket(const asperity_step *p, double guess, const 
     int k;
     b.low = 0.0;
     b.at_low = asperity_excess(p, b.low, r, o);
+    if (!(b.at_low > 0.0)) {
+        return b.low;
+    }
     b.high = guess > 1e-3 * most ? guess : 1e-3 * most;
     b.at_high = asperity_excess(p, b.high, r, o);
     b.side = 0;
-    while (b.at_high > 0.0 && b.high < most) {
+    while (b.at_high > 0.0 && b.high < most && o->tries > 0) {
         b.low = b.high;
         b.at_low = b.at_high;
         b.high = 4.0 * b.high < most ? 4.0 * b.high : most;
         b.at_high = asperity_excess(p, b.high, r, o);
     }
     y = b.high;
-    for (k = 0; k < ASPERITY_BRACKETS && b.at_low > 0.0 && b.at_high < 0.0 && b.high - b.low > 1e-15 * p->depth; k++) {
+    for (k = 0; k < ASPERITY_BRACKETS && b.at_low > 0.0 && b.at_high < 0.0 && b.high - b.low > 1e-15 * p->depth && o->tries > 0; k++) {
         double here;
         y = asperity_secant(&b);
         here = asperity_excess(p, y, r, o);
@@ -522,10 +540,13 @@ ASPERITY_FN asperity_m asperity_move(
     (void)start;
 #else
     if (!found) {
+        o->tries = ASPERITY_GUESSES < o->left ? ASPERITY_GUESSES : o->left;
+        o->left -= o->tries;
         y = asperity_bracket(p, guess, start, o);
+        o->left += o->tries;
         load = sqrt(o->residual[0] * o->residual[0] + o->residual[1] * o->residual[1] + o->residual[2] * o->residual[2]);
-        o->unsolved = load > 1e-7 ? load : 0.0;
-        found = p->last || !(load > 1e-7);
+        o->unsolved = load <= 1e-7 ? 0.0 : load;
+        found = p->last || load <= 1e-7;
     }
     if (what == ASPERITY_SLOPES) {
         asperity_wear_slopes(p, o);
