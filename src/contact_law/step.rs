@@ -68,6 +68,8 @@ pub(super) struct Guess {
     pub(super) reach: f64,
     pub(super) slip: [f64; 2],
     pub(super) residual: [f64; 3],
+    /// Guesses that are left to a bracket.
+    pub(super) tries: u32,
     /// Slopes of the residuals, of F_N and of F_T.
     pub(super) by: [[f64; 3]; SLOPES],
     pub(super) n_by: [f64; SLOPES],
@@ -152,6 +154,7 @@ impl Step<'_> {
             reach: self.state.reach,
             approach: self.approach - hardening,
             width: 1.0 + self.state.stiffened,
+            tries: o.tries,
             by: o.by,
             ..Guess::default()
         };

@@ -16,7 +16,7 @@ const STEPS: usize = 20;
 /// Steps of a bracket where Newton does not find the way.
 const BRACKETS: usize = 100;
 /// Parts of a step, at the most, where neither does; `tests/law/unsolved.c` counts what is left.
-const PARTS: u32 = 64;
+const PARTS: u32 = 256;
 /// Steps for the ratio at a hardening, greatest one over mu; on the way to it, and of its bracket,
 /// before halves and of halves.
 const RATIOS: usize = 50;
@@ -24,6 +24,10 @@ const SHORT: f64 = 1.0 / 15.0;
 const WAYS: usize = 400;
 const SLOWLY: usize = 600;
 const HALVES: usize = 20;
+/// Guesses of a bracket, at the most, and of all brackets of a step: where these do not do, parts
+/// are found sooner. `tests/law/unsolved.c` counts what is left.
+const GUESSES: u32 = 1 << 12;
+const ALL_GUESSES: u32 = 1 << 16;
 /// Hardening of a step over the depth and the elastic approach, at the most.
 const MOST_HARDENING: f64 = 3.0;
 /// Of F_N over the yield force and of F_T/F_N.
@@ -118,9 +122,9 @@ pub(super) fn moved(table: &Table, state: &ContactState, h: f64, d: [f64; 2]) ->
 /// slip may leave it several, and a slower one comes to the right one. The tangent is that of the
 /// last part.
 pub(super) fn moved_with(table: &Table, state: &ContactState, twist: Option<&Twist>, h: f64, d: [f64; 2]) -> Moved {
-    let mut parts = 1;
+    let (mut parts, mut left) = (1, ALL_GUESSES);
     loop {
-        if let Some(moved) = moved_in(parts, table, state, twist, h, d) {
+        if let Some(moved) = moved_in(parts, table, state, twist, (h, d), &mut left) {
             return moved;
         }
         parts *= 2;
@@ -131,8 +135,15 @@ pub(super) fn moved_with(table: &Table, state: &ContactState, twist: Option<&Twi
 type Moved = (ContactState, ContactResponse, Option<(Sectors, f64)>);
 
 /// A step in so many parts; none where the answer of one was not found. Of [`PARTS`] what is
-/// nearest will do.
-fn moved_in(parts: u32, table: &Table, state: &ContactState, twist: Option<&Twist>, h: f64, d: [f64; 2]) -> Option<Moved> {
+/// nearest will do. `left`: guesses of brackets.
+fn moved_in(
+    parts: u32,
+    table: &Table,
+    state: &ContactState,
+    twist: Option<&Twist>,
+    (h, d): (f64, [f64; 2]),
+    left: &mut u32,
+) -> Option<Moved> {
     let share = 1.0 / f64::from(parts);
     let mut from = *state;
     let mut turn = twist.map(|twist| {
@@ -141,7 +152,8 @@ fn moved_in(parts: u32, table: &Table, state: &ContactState, twist: Option<&Twis
     });
     for k in 1.. {
         let to = if k < parts { state.h + (h - state.h) * (f64::from(k) * share) } else { h };
-        let (next, response, sectors) = moved_once(table, &from, turn.as_ref(), to, d.map(|d| d * share), parts == PARTS)?;
+        let (next, response, sectors) =
+            moved_once(table, &from, turn.as_ref(), (to, d.map(|d| d * share)), parts == PARTS, left)?;
         if let Some(turn) = &mut turn {
             (turn.sectors, turn.vertex) = sectors.unwrap_or((Sectors::default(), turn.vertex));
         }
@@ -154,7 +166,14 @@ fn moved_in(parts: u32, table: &Table, state: &ContactState, twist: Option<&Twis
 }
 
 /// A step as it is; none where its answer is not found, unless it is the `last` way.
-fn moved_once(table: &Table, state: &ContactState, twist: Option<&Twist>, h: f64, d: [f64; 2], last: bool) -> Option<Moved> {
+fn moved_once(
+    table: &Table,
+    state: &ContactState,
+    twist: Option<&Twist>,
+    (h, d): (f64, [f64; 2]),
+    last: bool,
+    left: &mut u32,
+) -> Option<Moved> {
     let (mut step, released) = begin(table, state, twist, h, d);
     let mut o = Guess::default();
     let elastic = step.elastic(&mut o);
@@ -179,9 +198,15 @@ fn moved_once(table: &Table, state: &ContactState, twist: Option<&Twist>, h: f64
     let way = step.hinted(trial, r, trial_load);
     let hinted = way.begin.and_then(|(y, r)| step.newton(y, r, &mut o));
     let found = hinted.or_else(|| step.newton(guess, r, &mut o));
-    let (y, terms) = found.unwrap_or_else(|| step.bracket(guess, r, &mut o));
+    let (y, terms) = found.unwrap_or_else(|| {
+        o.tries = GUESSES.min(*left);
+        *left -= o.tries;
+        let answer = step.bracket(guess, r, &mut o);
+        *left += o.tries;
+        answer
+    });
     let [a, b, c] = o.residual;
-    if !last && a * a + b * b + c * c > ENOUGH * ENOUGH {
+    if !(last || a * a + b * b + c * c <= ENOUGH * ENOUGH) {
         return None;
     }
     if let Some(terms) = &terms {
@@ -397,17 +422,20 @@ impl Step<'_> {
             let terms = self.at_ratio(y, start, o);
             (if terms.is_some() { o.residual[0] } else { -1.0 }, terms)
         };
-        let mut b = Between { at_low: excess(0.0, o).0, high: guess.max(1e-3 * most), ..Between::default() };
-        let mut terms;
+        let (at_low, mut terms) = excess(0.0, o);
+        if !(at_low > 0.0) {
+            return (0.0, terms);
+        }
+        let mut b = Between { at_low, high: guess.max(1e-3 * most), ..Between::default() };
         (b.at_high, terms) = excess(b.high, o);
-        while b.at_high > 0.0 && b.high < most {
+        while b.at_high > 0.0 && b.high < most && o.tries > 0 {
             (b.low, b.at_low) = (b.high, b.at_high);
             b.high = (4.0 * b.high).min(most);
             (b.at_high, terms) = excess(b.high, o);
         }
         let mut y = b.high;
         for _ in 0..BRACKETS {
-            if !(b.at_low > 0.0 && b.at_high < 0.0) || b.high - b.low <= 1e-15 * self.depth {
+            if !(b.at_low > 0.0 && b.at_high < 0.0) || b.high - b.low <= 1e-15 * self.depth || o.tries == 0 {
                 break;
             }
             y = b.secant();
@@ -426,17 +454,20 @@ impl Step<'_> {
     fn at_ratio(&self, y: f64, start: [f64; 2], o: &mut Guess) -> Option<Terms> {
         let (mut r, short) = (start, self.table.friction * SHORT);
         for tries in 0..RATIOS {
-            let terms = self.evaluate(y, r, true, o)?;
+            let terms = self.counted(y, r, o)?;
             let [_, mut a, mut b] = o.residual;
             let size = (a * a + b * b).sqrt();
             if size < TOLERANCE {
                 return Some(terms);
             }
+            if o.tries == 0 {
+                break;
+            }
             if tries > 0 {
                 self.slopes_of_root(&terms, o);
                 let [_, x0, x1] = o.solve_at(0.0).unwrap_or_default();
                 let to = [r[0] + x0, r[1] + x1];
-                if x0 * x0 + x1 * x1 < short * short && self.evaluate(y, to, true, o).is_some() {
+                if x0 * x0 + x1 * x1 < short * short && self.counted(y, to, o).is_some() {
                     let [_, c, d] = o.residual;
                     if c * c + d * d < 0.04 * size * size {
                         r = to;
@@ -452,19 +483,25 @@ impl Step<'_> {
         // beyond mu.
         r = start;
         for _ in 0..SLOWLY {
-            let terms = self.evaluate(y, r, true, o)?;
+            let terms = self.counted(y, r, o)?;
             let [_, a, b] = o.residual;
-            if !(a * a + b * b > 1e-20) {
+            if !(a * a + b * b > 1e-20) || o.tries == 0 {
                 return Some(terms);
             }
             r = [r[0] + 0.05 * a, r[1] + 0.05 * b];
         }
+        self.counted(y, r, o)
+    }
+
+    /// The answer at a guess of a bracket.
+    fn counted(&self, y: f64, r: [f64; 2], o: &mut Guess) -> Option<Terms> {
+        o.tries = o.tries.saturating_sub(1);
         self.evaluate(y, r, true, o)
     }
 
     /// What the ratio lacks, along `e`, at a way `s` from `r`.
     fn along(&self, y: f64, r: [f64; 2], e: [f64; 2], s: f64, o: &mut Guess) -> f64 {
-        let touches = self.evaluate(y, [r[0] + s * e[0], r[1] + s * e[1]], true, o).is_some();
+        let touches = self.counted(y, [r[0] + s * e[0], r[1] + s * e[1]], o).is_some();
         if touches { o.residual[1] * e[0] + o.residual[2] * e[1] } else { -1.0 }
     }
 

@@ -70,6 +70,7 @@ ASPERITY_FN void asperity_advance(
         return;
     }
     asperity_begin(state, &s);
+    o.left = ASPERITY_ALL_GUESSES;
     while (!asperity_move_in(t, parts, &s, twist, &by, tangent ? ASPERITY_SLOPES : ASPERITY_FORCES, &a, &after, &o)) {
         parts *= 2;
     }

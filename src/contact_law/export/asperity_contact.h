@@ -196,7 +196,9 @@ typedef struct asperity_tangent {
 #define ASPERITY_TWIST_YIELD @TWIST_YIELD@     /* what M_twist over that lever counts for yield, beside F_T */
 #define ASPERITY_STEPS 20                      /* of Newton */
 #define ASPERITY_BRACKETS 100                  /* where that does not find the way */
-#define ASPERITY_PARTS 64                      /* of a step where neither does (tests/law/unsolved.c counts what is left) */
+#define ASPERITY_GUESSES 4096                  /* at the most, of one of these (tests/law/unsolved.c, as the next two) */
+#define ASPERITY_ALL_GUESSES 65536             /* and of all in a step */
+#define ASPERITY_PARTS 256                     /* of a step where neither does (tests/law/unsolved.c counts what is left) */
 #define ASPERITY_SHORT (1.0 / 15.0)            /* greatest step over mu on the way to a ratio (the same) */
 #define ASPERITY_HINT_SHORT 0.06               /* way to the trial's ratio over mu, up to which a step begins where the last one had it */
 #define ASPERITY_TOLERANCE 1e-12               /* of F_N over the yield force and of F_T/F_N */

@@ -83,11 +83,6 @@ ASPERITY_FN void asperity_keep(
     }
 }
 
-/* No contact hardens more in a step. */
-ASPERITY_FN asperity_v asperity_most(const asperity_step *p) {
-    return 3.0 * (p->e + p->depth);
-}
-
 /* Newton's method for the hardening y and the ratio r of the contacts in question, from a guess. Returns of which they are found, and o is of them. */
 ASPERITY_FN asperity_m asperity_newton(const asperity_step *p, asperity_m active, asperity_v *y, asperity_v r[2], asperity_guess *ASPERITY_ALONE o) {
     asperity_v from[3], step[3], least = asperity_all(1e300), most = asperity_most(p), back = asperity_all(0.0), norm, size;
@@ -192,46 +187,6 @@ ASPERITY_FN asperity_v asperity_grow_from(asperity_step *p, asperity_v softening
     p->growing = asperity_choose(held, before, p->growing);
     p->growing_slope = asperity_choose(held, -before * p->row.value[ASPERITY_GAMMA] / p->e, p->growing_slope);
     return at;
-}
-
-/* The hardening that brings F_N to the yield force, where the dent and D go on straight and r stays: `load` is F_N G/P, `factor` its G. */
-ASPERITY_FN asperity_v asperity_first_guess(const asperity_step *p, asperity_v load) {
-    asperity_v gamma = p->row.value[ASPERITY_GAMMA], most = asperity_most(p), left, y;
-    left = asperity_exponential(-asperity_logarithm(load / (p->rho * p->kept)) / gamma);
-    y = p->e * (1.0 - left) / (p->row.dent_slope + left * p->e / p->approach * p->row.approach_slope);
-    return asperity_choose(y > 0.0, asperity_choose(y < most, y, most), asperity_all(0.0));
-}
-
-/* Where Newton's method begins in a short step of a contact that has yielded before: as far on the way to the trial's ratio as in its last step that yielded, along the ratio of the
- * start and across it, and with as much of the hardening that the trial would bring. Returns of which contacts; y and r of the others stay. */
-ASPERITY_FN asperity_m asperity_hinted(asperity_step *p, const asperity_v trial[2], asperity_v *y, asperity_v r[2]) {
-    const asperity_v *hint = p->s->hint;
-    asperity_v per = 1.0 / asperity_root(r[0] * r[0] + r[1] * r[1] + 1e-200), x = trial[0] - r[0], z = trial[1] - r[1], along, across;
-    asperity_m hinted = (asperity_size(hint[2]) > 0.0) & (p->old_f_n > 0.0) & (x * x + z * z < ASPERITY_HINT_SHORT * ASPERITY_HINT_SHORT * p->friction * p->friction);
-    p->axis[0] = r[0] * per;
-    p->axis[1] = r[1] * per;
-    p->toward[0] = x * p->axis[0] + z * p->axis[1];
-    p->toward[1] = z * p->axis[0] - x * p->axis[1];
-    p->trial = asperity_first_guess(p, p->trial);
-    along = hint[0] * p->toward[0];
-    across = hint[1] * p->toward[1];
-    asperity_put(hinted, r[0], r[0] + (along * p->axis[0] - across * p->axis[1]));
-    asperity_put(hinted, r[1], r[1] + (along * p->axis[1] + across * p->axis[0]));
-    asperity_put(hinted, *y, asperity_size(hint[2]) * p->trial);
-    return hinted;
-}
-
-/* A number within bounds, and the lower one where it is none. */
-ASPERITY_FN asperity_v asperity_within(asperity_v x, double least, double most) {
-    return asperity_choose(x > least, asperity_choose(x < most, x, asperity_all(most)), asperity_all(least));
-}
-
-/* The hint that a step leaves which yielded, from the ratio at its start. What hardly moved one way says nothing of it. */
-ASPERITY_FN void asperity_keep_hint(const asperity_step *p, asperity_m flows, asperity_v y, const asperity_v r[2], const asperity_v start[2], asperity_work *next) {
-    asperity_v x = r[0] - start[0], z = r[1] - start[1], along = p->toward[0] * p->toward[0], across = p->toward[1] * p->toward[1], least = 0.01 * (along + across);
-    asperity_put(flows & (along > least), next->hint[0], asperity_within((x * p->axis[0] + z * p->axis[1]) / p->toward[0], -2.0, 2.0));
-    asperity_put(flows & (across > least), next->hint[1], asperity_within((z * p->axis[0] - x * p->axis[1]) / p->toward[1], -2.0, 2.0));
-    asperity_put(flows, next->hint[2], asperity_within(y / p->trial, 0.01, 10.0));
 }
 
 /* The sliders' exponent when it is sheared so far. */
@@ -358,12 +313,18 @@ ASPERITY_FN void asperity_narrow(asperity_between *b, double place, double exces
     }
 }
 
+/* The answer at a guess of a bracket. */
+ASPERITY_FN int asperity_counted(const asperity_step *p, double y, const double r[2], asperity_guess *ASPERITY_ALONE o) {
+    o->tries -= o->tries > 0;
+    return asperity_evaluate(p, y, r, o);
+}
+
 /* What the ratio lacks, along e, at a way s from r. */
 ASPERITY_FN double asperity_along(const asperity_step *p, double y, const double r[2], const double e[2], double s, asperity_guess *ASPERITY_ALONE o) {
     double at[2];
     at[0] = r[0] + s * e[0];
     at[1] = r[1] + s * e[1];
-    return asperity_evaluate(p, y, at, o) ? o->residual[1] * e[0] + o->residual[2] * e[1] : -1.0;
+    return asperity_counted(p, y, at, o) ? o->residual[1] * e[0] + o->residual[2] * e[1] : -1.0;
 }
 
 /* The way from r along e to the first ratio that lacks nothing; of r it lacks `size`. Flow that fades at full slip may leave several, and a slower step would come to the first. */
@@ -397,7 +358,7 @@ ASPERITY_FN double asperity_excess(const asperity_step *p, double y, const doubl
     double r[2] = {start[0], start[1]}, short_of = p->friction * ASPERITY_SHORT, lacks[2], x[3], to[2], size, s;
     int k;
     for (k = 0; k < 50; k++) {
-        if (!asperity_evaluate(p, y, r, o)) {
+        if (!asperity_counted(p, y, r, o)) {
             return -1.0;
         }
         lacks[0] = o->residual[1];
@@ -406,13 +367,16 @@ ASPERITY_FN double asperity_excess(const asperity_step *p, double y, const doubl
         if (size < ASPERITY_TOLERANCE) {
             return o->residual[0];
         }
+        if (o->tries == 0) {
+            break;
+        }
         if (k > 0) {
             asperity_guess_slopes(p, 3, 1, o);
             x[1] = x[2] = 0.0;
             asperity_solve_at(o, 1, 0.0, x);
             to[0] = r[0] + x[1];
             to[1] = r[1] + x[2];
-            if (x[1] * x[1] + x[2] * x[2] < short_of * short_of && asperity_evaluate(p, y, to, o) &&
+            if (x[1] * x[1] + x[2] * x[2] < short_of * short_of && asperity_counted(p, y, to, o) &&
                 o->residual[1] * o->residual[1] + o->residual[2] * o->residual[2] < 0.04 * size * size) {
                 r[0] = to[0];
                 r[1] = to[1];
@@ -428,11 +392,17 @@ ASPERITY_FN double asperity_excess(const asperity_step *p, double y, const doubl
     /* Slowly from the start, where that comes to no end: there is an answer, as no ratio is beyond mu. */
     r[0] = start[0];
     r[1] = start[1];
-    for (k = 0; k < 600 && asperity_evaluate(p, y, r, o) && o->residual[1] * o->residual[1] + o->residual[2] * o->residual[2] > 1e-20; k++) {
+    for (k = 0; k < 600; k++) {
+        if (!asperity_counted(p, y, r, o)) {
+            return -1.0;
+        }
+        if (!(o->residual[1] * o->residual[1] + o->residual[2] * o->residual[2] > 1e-20) || o->tries == 0) {
+            return o->residual[0];
+        }
         r[0] += 0.05 * o->residual[1];
         r[1] += 0.05 * o->residual[2];
     }
-    return asperity_evaluate(p, y, r, o) ? o->residual[0] : -1.0;
+    return asperity_counted(p, y, r, o) ? o->residual[0] : -1.0;
 }
 
 /* The hardening, where Newton does not find the way: r is solved for at each, and what F_N G has over the yield force falls from above zero at 0 to below it. */
@@ -442,17 +412,20 @@ ASPERITY_FN double asperity_bracket(const asperity_step *p, double guess, const 
     int k;
     b.low = 0.0;
     b.at_low = asperity_excess(p, b.low, r, o);
+    if (!(b.at_low > 0.0)) {
+        return b.low;
+    }
     b.high = guess > 1e-3 * most ? guess : 1e-3 * most;
     b.at_high = asperity_excess(p, b.high, r, o);
     b.side = 0;
-    while (b.at_high > 0.0 && b.high < most) {
+    while (b.at_high > 0.0 && b.high < most && o->tries > 0) {
         b.low = b.high;
         b.at_low = b.at_high;
         b.high = 4.0 * b.high < most ? 4.0 * b.high : most;
         b.at_high = asperity_excess(p, b.high, r, o);
     }
     y = b.high;
-    for (k = 0; k < ASPERITY_BRACKETS && b.at_low > 0.0 && b.at_high < 0.0 && b.high - b.low > 1e-15 * p->depth; k++) {
+    for (k = 0; k < ASPERITY_BRACKETS && b.at_low > 0.0 && b.at_high < 0.0 && b.high - b.low > 1e-15 * p->depth && o->tries > 0; k++) {
         double here;
         y = asperity_secant(&b);
         here = asperity_excess(p, y, r, o);
@@ -565,10 +538,13 @@ ASPERITY_FN asperity_m asperity_move(
         found = asperity_newton(p, flows, &y, r, o);
     }
     if (!found) {
+        o->tries = ASPERITY_GUESSES < o->left ? ASPERITY_GUESSES : o->left;
+        o->left -= o->tries;
         y = asperity_bracket(p, guess, start, o);
+        o->left += o->tries;
         load = sqrt(o->residual[0] * o->residual[0] + o->residual[1] * o->residual[1] + o->residual[2] * o->residual[2]);
-        o->unsolved = load > 1e-7 ? load : 0.0;
-        found = p->last || !(load > 1e-7);
+        o->unsolved = load <= 1e-7 ? 0.0 : load;
+        found = p->last || load <= 1e-7;
     }
     if (what == ASPERITY_SLOPES) {
         asperity_wear_slopes(p, o);

@@ -62,6 +62,7 @@ typedef struct asperity_guess {
     asperity_cell cell[ASPERITY_SHAPES];
     asperity_v r[2], f_n, f_t[2], factor, rho, width, reach, hardens, vertex[2], residual[3], slip[2], friction, stored, stiffness, unsolved;
     asperity_m plastic;
+    int tries, left; /* guesses that a bracket has left, and those of the step */
     asperity_v e, level, log_width, scale, move[3];
     asperity_v slider[3][ASPERITY_CELLS];
     /* Of a slider: its limit, its radial force and the square of all before they give way, whether it does, and the share of its force that it keeps. */

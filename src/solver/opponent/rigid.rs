@@ -101,9 +101,10 @@ impl Opponent for RigidBody {
     }
 
     fn needed_forces(&self, trial: &Trial, mesh: &Mesh) -> Vec<([f64; 3], Status)> {
-        let force = |(i, &n): (usize, &u32)| to_frame(frame_at(trial, i), &trial.force_at(n));
-        let nodes = mesh.contact_nodes.iter().enumerate();
-        nodes.map(|(i, n)| needed(&trial.rows[i], force((i, n)), !mesh.is_on_symmetry_plane(*n))).collect()
+        // There are no rows before the first step.
+        let nodes = mesh.contact_nodes.iter().zip(&trial.rows).enumerate();
+        let force = |i: usize, node: u32| to_frame(frame_at(trial, i), &trial.force_at(node));
+        nodes.map(|(i, (&node, rows))| needed(rows, force(i, node), !mesh.is_on_symmetry_plane(node))).collect()
     }
 
     fn friction_work(&self, _trial: &Trial, step: &StepTaken<'_>) -> f64 {
