@@ -517,8 +517,7 @@ ASPERITY_FN asperity_m asperity_move(
     elastic[4] = o->stiffness;
     p->radial = asperity_column(t, &p->row, ASPERITY_RADIAL_SLIP);
     p->sudden = asperity_column(t, &p->row, ASPERITY_SUDDEN);
-    trial[0] = r[0];
-    trial[1] = r[1];
+    memcpy(trial, r, sizeof trial);
     p->trial = load * o->factor;
     factor = asperity_grow_from(p, softening, o->factor, o->cell, r);
     p->rho_log = asperity_choose(p->rho < 1.0 - 1e-12, -1.0 / asperity_logarithm(p->rho), none);
