@@ -117,8 +117,8 @@ fn gauss_rule(n: usize) -> Vec<(f64, f64)> {
 mod tests {
     use super::*;
 
-    /// Whichever corner is named first, and where one stands twice but for rounding: the same sum of
-    /// what no rule integrates exactly.
+    /// Whichever corner is named first, and where one stands twice but for rounding: the same sum
+    /// of what no rule integrates exactly.
     #[test]
     fn a_rule_knows_no_first_corner() {
         let polygon = [[0.0, 0.0], [1.0, 0.1], [1.2, 0.9], [0.3, 1.1]];
