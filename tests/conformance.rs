@@ -9,6 +9,8 @@ mod iterate;
 mod linear;
 #[path = "conformance/memory.rs"]
 mod memory;
+#[path = "conformance/pair.rs"]
+mod pair;
 #[path = "conformance/press.rs"]
 mod press;
 

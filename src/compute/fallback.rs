@@ -65,7 +65,7 @@ impl Fallback {
         // Nothing fails from here on.
         for (case, copy) in copies {
             self.commits += 1;
-            (self.committed[case], self.weights[case]) = (Some(copy), 0.0);
+            (self.committed[case], self.is_away[case], self.weights[case]) = (Some(copy), false, 0.0);
         }
         for ((case, call), answer) in calls.iter().zip(answers) {
             match (call, answer) {

@@ -3,7 +3,7 @@
 //!
 //! A backend that keeps iterates ([`super::About::keeps`]) has two for each case, the
 //! current one and a trial, both as increments since the committed state, and a correction that
-//! leads from the one to the other. Over a rigid body only.
+//! leads from the one to the other. Over a rigid body only, and in the press of an equal pair.
 
 use super::linear::SideReport;
 use super::{Energies, Evaluated, Fault};

@@ -89,7 +89,7 @@ fn pressed_on(context: &Arc<GpuContext>, mesh: &Arc<Mesh>) -> Pressed {
         let start =
             SetOut { displacement: &zero, h: 0.0, pose: Pose::default(), guess: None, extrapolation: None, came_off: &[] };
         let mut handle = CaseHandle { backend: &mut gpu, case };
-        assert_eq!(newton.keeps_on(&handle), Keeps::Steps);
+        assert_eq!(newton.keeps_on(&handle, false), Keeps::Steps);
         let outcome = newton.solve(&mut handle, &start, &control).unwrap();
         assert!(matches!(outcome, StepOutcome::Converged(_)), "{outcome:?}");
         let settled = newton.settle(&mut handle).unwrap().unwrap();

@@ -86,6 +86,11 @@ impl Committed {
         state
     }
 
+    /// Up to the first shear all is even in x.
+    pub fn is_even(&self) -> bool {
+        self.direction == 0.0
+    }
+
     /// Length of a step to a target in the measure in which plastic flow goes on evenly: the
     /// contact radius grows as sqrt(h) under pressing, and what moves along and about the surface
     /// is measured by itself.

@@ -106,7 +106,7 @@ impl<'a> Drive<'a> {
             self.safe.keep(snapshot.clone());
         }
         self.handle().restore(snapshot.case)?;
-        if self.keeps() != Keeps::Nothing {
+        if self.keeps(snapshot.state.is_even()) != Keeps::Nothing {
             self.handle().iterate(false, Plate::default(), Ask::SetEarlier(snapshot.state.u_before.clone()))?;
         }
         self.is_away = false;
@@ -412,7 +412,12 @@ impl<'a> Drive<'a> {
     fn attempt(&mut self, target: &Target) -> Result<StepOutcome, SimulationError> {
         self.traffic_before = self.traffic_before.or_else(|| self.backend.about().traffic);
         self.newton.set_may_miss(self.place.depth >= SHALLOW);
-        let keeps = self.keeps();
+        let is_even = self.state.is_even();
+        let keeps = self.keeps(is_even);
+        if keeps == Keeps::Nothing {
+            // Of an equal pair that is sheared for the first time they are on the device.
+            self.fetch()?;
+        }
         let ratio = self.extrapolation(target);
         let h = self.expected_h(target, ratio);
         self.set_out_widening(target)?;
@@ -428,8 +433,7 @@ impl<'a> Drive<'a> {
             None => 0.0,
         };
         let expected = guess.as_deref().unwrap_or(&self.state.u);
-        // Up to the first shear all is even in x.
-        self.newton.set_out(&self.mesh, &self.state.u, expected, self.state.direction == 0.0);
+        self.newton.set_out(&self.mesh, &self.state.u, expected, is_even);
         if let Some(guess) = &mut guess {
             if !self.problem.pressed_in_full {
                 self.newton.opponent().separate(&self.mesh, guess);
@@ -460,9 +464,9 @@ impl<'a> Drive<'a> {
         Ok(outcome)
     }
 
-    /// Which iterates stay on the device.
-    fn keeps(&mut self) -> Keeps {
-        self.newton.keeps_on(&CaseHandle { backend: &mut *self.backend, case: self.case })
+    /// Which iterates of a step stay on the device, which is even in x if it is `even`.
+    fn keeps(&mut self, even: bool) -> Keeps {
+        self.newton.keeps_on(&CaseHandle { backend: &mut *self.backend, case: self.case }, even)
     }
 
     /// How many times the last step of the segment is added to the committed displacement, if any:

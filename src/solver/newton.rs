@@ -67,6 +67,8 @@ pub struct Newton {
     iterates: ResidentIterate,
     /// The present step's are on the device.
     is_resident: bool,
+    /// The present step is even in x.
+    is_even: bool,
     /// Why they stay on the host whatever the device can do: it knows a rigid plate that moves
     /// along x alone.
     at_home: Option<&'static str>,
@@ -93,6 +95,7 @@ impl Newton {
         Self {
             iterates: ResidentIterate::new(HostIterate::new(mesh, linear.into())),
             is_resident: false,
+            is_even: false,
             at_home: None,
             settings,
             tolerance: settings.tolerance,
@@ -122,9 +125,10 @@ impl Newton {
         self.iterates.host.opponent()
     }
 
-    /// Which iterates of the case stay on this backend.
-    pub fn keeps_on(&self, case: &CaseHandle<'_>) -> Keeps {
-        let is_known = self.iterates.host.is_rigid_by_multigrid() && self.at_home.is_none();
+    /// Which iterates of the case stay on this backend in a step, which is even in x if it is
+    /// `even`.
+    pub fn keeps_on(&self, case: &CaseHandle<'_>, even: bool) -> Keeps {
+        let is_known = self.iterates.host.is_known_by_multigrid(even) && self.at_home.is_none();
         if is_known { case.keeps() } else { Keeps::Nothing }
     }
 
@@ -132,6 +136,12 @@ impl Newton {
     /// where these are not those of one body over a rigid one; `None` where neither does.
     pub fn stays_on_host(&self) -> Option<&'static str> {
         let host = &self.iterates.host;
+        if host.opponent().is_known(true) && !host.opponent().is_rigid() && self.at_home.is_none() {
+            return Some(
+                "the sphere is pressed against its equal, so the vectors and linear systems of Newton's method stay on the \
+                 host from the first shear on",
+            );
+        }
         if !host.opponent().is_rigid() {
             return Some(
                 "the sphere is pressed against a body that deforms, so the vectors and linear systems of Newton's method \
@@ -218,6 +228,7 @@ impl Newton {
 
     /// Sets out for the next step (see [`Opponent::set_out`]).
     pub fn set_out(&mut self, mesh: &Mesh, start: &[f64], expected: &[f64], symmetric: bool) {
+        self.is_even = symmetric;
         self.iterates.host.set_out(mesh, start, expected, symmetric);
     }
 
@@ -299,7 +310,7 @@ impl Newton {
         start: &SetOut<'_>,
         control: &Control,
     ) -> Result<StepOutcome, SolverError> {
-        let keeps = self.keeps_on(case);
+        let keeps = self.keeps_on(case, self.is_even);
         self.is_resident = keeps != Keeps::Nothing;
         self.tolerance = self.settings.tolerance.max(if keeps == Keeps::Guesses { SINGLE } else { 0.0 });
         let followed = if keeps == Keeps::Guesses {

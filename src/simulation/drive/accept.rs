@@ -277,11 +277,14 @@ impl Drive<'_> {
     fn take_from_device(&mut self, settled: Settled) -> Taken {
         let Settled { outcome, energies, points } = settled;
         let (mut displacement, internal_force) = (self.state.u.clone(), self.state.force.clone());
-        let mut gaps = Vec::with_capacity(points.len());
+        let (mut statuses, mut gaps) = (Vec::with_capacity(points.len()), Vec::with_capacity(points.len()));
         for (point, &node) in points.iter().zip(&self.mesh.contact_nodes) {
             displacement[3 * node as usize..][..3].copy_from_slice(&point.displacement);
             let reference = self.mesh.nodes[node as usize];
-            gaps.push(self.newton.opponent().first_gap(&std::array::from_fn(|i| reference[i] + point.displacement[i])));
+            let position = std::array::from_fn(|i| reference[i] + point.displacement[i]);
+            let (status, gap) = self.newton.opponent().settled(&position, point.status, self.problem.model.friction);
+            statuses.push(status);
+            gaps.push(gap);
         }
         self.is_away = true;
         Taken {
@@ -290,7 +293,7 @@ impl Drive<'_> {
             displacement,
             internal_force,
             forces: points.iter().map(|point| point.force).collect(),
-            statuses: points.iter().map(|point| point.status).collect(),
+            statuses,
             gaps,
         }
     }

@@ -153,8 +153,13 @@ impl HostIterate {
         self.slope(&self.current)
     }
 
-    /// Over a rigid body, its systems solved with multigrid: what a device that keeps iterates does
-    /// by itself.
+    /// A step, even in x if it is `even`, whose conditions of contact backends know, its systems
+    /// solved with multigrid: what a device that keeps iterates does by itself.
+    pub fn is_known_by_multigrid(&self, even: bool) -> bool {
+        self.opponent.is_known(even) && self.linear.kind() == SolverKind::Multigrid
+    }
+
+    /// Over a rigid body, its systems solved with multigrid.
     pub fn is_rigid_by_multigrid(&self) -> bool {
         self.opponent.is_rigid() && self.linear.kind() == SolverKind::Multigrid
     }
@@ -194,7 +199,9 @@ impl HostIterate {
         self.current.u.copy_from_slice(&vectors.displacement);
         self.current.force.copy_from_slice(&vectors.force);
         self.current.h = h;
-        self.boundary.frictionless.copy_from_slice(&vectors.sliding);
+        if self.opponent.is_rigid() {
+            self.boundary.frictionless.copy_from_slice(&vectors.sliding);
+        }
         Ok(self.current.assess(case, &self.boundary, &*self.opponent, control, &mut PhaseTimes::default())?)
     }
 

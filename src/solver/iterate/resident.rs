@@ -80,9 +80,15 @@ impl ResidentIterate {
     }
 
     fn begin_from(&mut self, case: &mut CaseHandle<'_>, control: &Control, from: From) -> Result<Reading, SolverError> {
-        // Without full stick no point slides that the friction does not let.
-        let sticks = case.model().friction == Friction::Stick && !matches!(from, From::Shift(_));
-        let sliding = sticks.then(|| self.host.boundary().frictionless.clone());
+        let slides = &self.host.boundary().frictionless;
+        let sliding = match from {
+            From::Shift(_) => None,
+            // Two bodies that meet in a plane: nothing slips, as nothing is there that friction
+            // would have to hold.
+            _ if !self.host.opponent().is_rigid() => Some(vec![true; slides.len()]),
+            // Without full stick no point slides that the friction does not let.
+            _ => (case.model().friction == Friction::Stick).then(|| slides.clone()),
+        };
         let reading = self.ask_reading(case, control, Ask::Begin(Begin { from, sliding }))?;
         self.plate_force = reading.plate_force;
         Ok(reading)
@@ -98,8 +104,11 @@ impl ResidentIterate {
             self.ask_reading(case, control, Ask::Land)?;
         }
         match self.ask(case, control, Ask::Bring)? {
-            Reply::Vectors(vectors) => {
-                self.host.set_sliding(&vectors.sliding);
+            Reply::Vectors(mut vectors) => {
+                if self.host.opponent().is_rigid() {
+                    self.host.set_sliding(&vectors.sliding);
+                }
+                self.host.opponent().leave_even(&mut vectors.displacement);
                 Ok(vectors)
             }
             other => Err(unexpected(&other)),

@@ -55,6 +55,12 @@ pub trait Bodies: Debug + Send + Sync {
     /// the undeformed bodies.
     fn gap_of_unfaced(&self, height: f64) -> f64;
 
+    /// Where all has the bodies' symmetry they meet as over the plane between them, which is z = 0,
+    /// without friction.
+    fn meets_in_a_plane(&self) -> bool {
+        false
+    }
+
     /// The symmetry that each body keeps while it is only pressed: the mirror in x, or another one.
     fn symmetry(&self, mesh: &Mesh) -> Symmetry {
         Symmetry::mirror(mesh)
@@ -163,8 +169,8 @@ impl<B: Bodies> Joint<B> {
             rows.force_rows[1] = [0.0, 1.0, 0.0];
             rows.displacement_rows[1] = [0.0; 3];
         }
-        if sticks && rows.status == Status::Slip && friction != Friction::Coulomb(0.0) {
-            rows.status = Status::Stick;
+        if sticks {
+            rows.status = even_status(rows.status, friction);
         }
         rows
     }
@@ -187,6 +193,15 @@ impl<B: Bodies> Opponent for Joint<B> {
 
     fn contact_point(&self, centre: &[f64; 3]) -> [f64; 3] {
         self.bodies.contact_point(centre)
+    }
+
+    /// The plane between two bodies is the default surface of a case's model.
+    fn is_known(&self, even: bool) -> bool {
+        even && !self.symmetry.nodes.is_empty() && self.bodies.meets_in_a_plane()
+    }
+
+    fn settled(&self, x: &[f64; 3], status: Status, friction: Friction<f64>) -> (Status, f64) {
+        (even_status(status, friction), self.bodies.gap_of_unfaced(x[2]))
     }
 
     fn set_out(&mut self, mesh: &Mesh, start: &[f64], expected: &[f64], symmetric: bool) {
@@ -289,6 +304,9 @@ impl<B: Bodies> Opponent for Joint<B> {
 
     /// All that is dissipated between two bodies; of one of an equal pair's, half of it.
     fn friction_work(&self, trial: &Trial, step: &StepTaken<'_>) -> f64 {
+        if B::STICKS_IF_EVEN && self.is_even() {
+            return 0.0;
+        }
         let (interface, after, w) = (&self.interface, self.carried(trial), self.interface.relative(&trial.u));
         let mut before = step.before.to_vec();
         interface.reduce(&mut before);
@@ -303,4 +321,9 @@ impl<B: Bodies> Opponent for Joint<B> {
         }
         work
     }
+}
+
+/// What a point does whose rows are those without friction, as nothing slips where all is even.
+fn even_status(status: Status, friction: Friction<f64>) -> Status {
+    if status == Status::Slip && friction != Friction::Coulomb(0.0) { Status::Stick } else { status }
 }

@@ -71,6 +71,13 @@ pub trait Opponent: Debug + Send + Sync {
         false
     }
 
+    /// Whether backends know the conditions of contact of a step, which is even in x if it is
+    /// `even`: a device may then make all of it. Other steps' are stated here alone.
+    fn is_known(&self, even: bool) -> bool {
+        let _ = even;
+        self.is_rigid()
+    }
+
     /// The contact nodes at which the contact is known: of two bodies the slave's.
     fn contacts(&self, mesh: &Mesh) -> Range<usize> {
         0..mesh.own_contacts()
@@ -79,6 +86,13 @@ pub trait Opponent: Debug + Send + Sync {
     /// Gap of a contact node of the undeformed body at `x`; over a rigid body of any node there.
     fn first_gap(&self, x: &[f64; 3]) -> f64 {
         x[2]
+    }
+
+    /// What a contact node does that is at `x` at the end of a step of which backends know the
+    /// conditions of contact (see [`Opponent::is_known`]), where they say `status`; and its gap.
+    fn settled(&self, x: &[f64; 3], status: Status, friction: Friction<f64>) -> (Status, f64) {
+        let _ = friction;
+        (status, self.first_gap(x))
     }
 
     /// The point of its surface on the normal through the sphere's centre: over a plane the foot of

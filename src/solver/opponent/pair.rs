@@ -47,6 +47,12 @@ impl Bodies for EqualPair {
         2.0 * height
     }
 
+    /// The image of a body that is even in x, turned half round y, is its mirror image in the
+    /// plane. An inverted one's mortar joins no node to its own mirror image where it has its seam.
+    fn meets_in_a_plane(&self) -> bool {
+        self.image == Image::HalfTurn
+    }
+
     fn symmetry(&self, mesh: &Mesh) -> Symmetry {
         match self.image {
             Image::HalfTurn => Symmetry::mirror(mesh),
