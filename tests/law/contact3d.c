@@ -305,7 +305,7 @@ int main(void) {
         }
     }
     expect(worst < 1e-15, "a direction packed and unpacked", worst);
-    expect(sizeof(asperity_contact) == 36 * sizeof(asperity_real), "numbers of a contact", (double)(sizeof(asperity_contact) / sizeof(asperity_real)));
+    expect(sizeof(asperity_contact) == 39 * sizeof(asperity_real), "numbers of a contact", (double)(sizeof(asperity_contact) / sizeof(asperity_real)));
     load(&pair, 0, &c, &out, &i, &j);
     expect((out.flags & ASPERITY_TOUCHES) != 0 && out.f_n > 0.0 && out.f_t > 0.0, "F_T/F_N of a pair", out.f_t / out.f_n);
     objectivity(&pair, 0);
