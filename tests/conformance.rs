@@ -13,6 +13,8 @@ mod memory;
 mod pair;
 #[path = "conformance/press.rs"]
 mod press;
+#[path = "conformance/recorder.rs"]
+mod recorder;
 
 mod device;
 

@@ -79,8 +79,8 @@ class Contacts:
     def array(self) -> np.ndarray:
         """A copy of the memory, a row a contact: h, the greatest h, the elastic approach, the hardening and the approach at which the sliders are whole,
         lengths; the share of the yield force that releases took, the share of F_N released last, how far it was sheared (to 1) and its slip reversed (to 2),
-        by what share it is wider than its F_N; the vertex (2); the forces of the sliders along x, along y and radial; how the last step
-        that yielded went (3), from which the next one is solved. What is assigned here is put back; all
+        by what share it is wider than its F_N; the vertex (2); the forces of the sliders along x, along y and radial; how the
+        last plastic step went (3), which only tells where the next solution begins. What is assigned here is put back; all
         of it must be finite."""
         return self._native.to_array()
 

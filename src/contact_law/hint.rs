@@ -1,9 +1,10 @@
-//! Where Newton's method begins: by how the last step that yielded went. It answers to the same
-//! tolerance with a hint and without.
+//! Where Newton's method begins, given how the last plastic step went. With a hint and without one
+//! the equations are met to the same tolerance.
 
 use super::step::Step;
 
-/// Way to the trial's ratio over mu, up to which a step begins where the last one had it.
+/// Greatest way to the trial's ratio over mu of a step that begins by its hint
+/// (`benches/law/fit_hint.py`).
 const HINT_SHORT: f64 = 0.06;
 
 /// Where Newton's method begins in a short step of a contact that has yielded before, and what the
@@ -19,8 +20,8 @@ pub(super) struct Way {
 }
 
 impl Way {
-    /// The hint that a step leaves which yielded, from the ratio at its `start`. What hardly moved
-    /// one way says nothing of it.
+    /// The hint that a step leaves in which the contact yielded, from the ratio at its `start`.
+    /// Where the way in one direction is too short to tell, that of before stays.
     pub(super) fn left(&self, before: [f64; 3], y: f64, r: [f64; 2], start: [f64; 2]) -> [f64; 3] {
         let ([x, z], [u, v], [along, across]) = ([r[0] - start[0], r[1] - start[1]], self.axis, self.toward);
         let least = 0.01 * (along * along + across * across);
@@ -40,7 +41,8 @@ fn within(x: f64, least: f64, most: f64) -> f64 {
 impl Step<'_> {
     /// Where Newton's method begins in a short step of a contact that has yielded before: as far on
     /// the way to the trial's ratio as in its last step that yielded, along the ratio of the start
-    /// and across it, and with as much of the hardening that the trial would bring.
+    /// and across it, and with as much of the hardening that the trial would bring; `load` is the
+    /// trial's F_N G over the yield force.
     pub(super) fn hinted(&self, trial: [f64; 2], r: [f64; 2], load: f64) -> Way {
         let (hint, short) = (self.state.hint, HINT_SHORT * self.table.friction);
         let per = 1.0 / (r[0] * r[0] + r[1] * r[1] + 1e-200).sqrt();

@@ -2,16 +2,16 @@
 //! meets: point by point against the CPU, which has the mortar; and what a device leaves that is
 //! lost on the way.
 
+use crate::recorder::Recorder;
 use asperity::case::Case;
 use asperity::internals::compute::Compute;
 use asperity::internals::compute::cpu::Cpu;
 use asperity::internals::compute::fallback::Fallback;
 use asperity::internals::compute::gpu::{Gpu, GpuContext, Precision};
 use asperity::internals::contact::coulomb::Status;
-use asperity::internals::simulation::drive::{Drive, Ending, Observer, StepView};
+use asperity::internals::simulation::drive::{Drive, Ending};
 use asperity::internals::simulation::problem::Problem;
 use asperity::internals::simulation::record::{RecordedPoint, StepRecord};
-use std::error::Error;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -31,32 +31,6 @@ fn problem(friction: &str) -> Problem {
         friction,
     ];
     Problem::new(&Case::load(&file, &set.map(String::from)).unwrap()).unwrap()
-}
-
-/// Collects steps with their points; breaks the device after one of them.
-#[derive(Default)]
-struct Recorder<'a> {
-    steps: Vec<(StepRecord, Vec<RecordedPoint>)>,
-    notes: Vec<String>,
-    destroy: Option<(usize, &'a GpuContext)>,
-}
-
-impl Observer for Recorder<'_> {
-    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn Error + Send + Sync>> {
-        self.steps.push((view.record.0, view.points.to_vec()));
-        if let Some((_, context)) = self.destroy.filter(|(step, _)| *step == view.record.0.step) {
-            context.destroy();
-        }
-        Ok(())
-    }
-
-    fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Box<dyn Error + Send + Sync>> {
-        Ok(())
-    }
-
-    fn note(&mut self, text: &str) {
-        self.notes.push(text.to_owned());
-    }
 }
 
 fn followed<'a>(problem: &Problem, backend: &mut dyn Compute, destroy: Option<(usize, &'a GpuContext)>) -> Recorder<'a> {

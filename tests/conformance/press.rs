@@ -1,16 +1,16 @@
 //! A small press and shear, step by step, on every backend: its history against the CPU's in f64,
 //! within gaps that were measured and written down in fixtures/precision.json.
 
+use crate::recorder::Recorder;
 use asperity::case::Case;
 use asperity::internals::compute::cpu::Cpu;
 use asperity::internals::compute::fallback::Fallback;
 use asperity::internals::compute::gpu::{Gpu, GpuContext, Mixed, Precision};
 use asperity::internals::compute::{CaseModel, Compute};
-use asperity::internals::simulation::drive::{Drive, Ending, Observer, StepView};
+use asperity::internals::simulation::drive::{Drive, Ending};
 use asperity::internals::simulation::problem::Problem;
 use asperity::internals::simulation::record::StepRecord;
 use std::collections::BTreeMap;
-use std::error::Error;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -63,40 +63,14 @@ fn problem() -> Problem {
     Problem::new(&case).unwrap()
 }
 
-/// Collects the history; breaks the device after a number of steps.
-struct Recorder<'a> {
-    history: Vec<StepRecord>,
-    notes: Vec<String>,
-    destroy: Option<(usize, &'a GpuContext)>,
-}
-
-impl Observer for Recorder<'_> {
-    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn Error + Send + Sync>> {
-        self.history.push(view.record.0);
-        if let Some((_, context)) = self.destroy.filter(|(step, _)| *step == view.record.0.step) {
-            context.destroy();
-        }
-        Ok(())
-    }
-
-    fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Box<dyn Error + Send + Sync>> {
-        Ok(())
-    }
-
-    fn note(&mut self, text: &str) {
-        self.notes.push(text.to_owned());
-        println!("{text}");
-    }
-}
-
 fn history(problem: &Problem, backend: &mut dyn Compute, destroy: Option<(usize, &GpuContext)>) -> Vec<StepRecord> {
-    let mut recorder = Recorder { history: Vec::new(), notes: Vec::new(), destroy };
+    let mut recorder = Recorder { destroy, ..Recorder::default() };
     let ending = Drive::new(problem, backend, 0, problem.newton().unwrap()).run(&mut recorder).unwrap();
     assert_eq!(ending, Ending::Done);
     // told once, at the step that the CPU had to make
     let told = |n: &String| n.contains("after 6 accepted steps") && n.contains("no accepted step was lost");
     assert!(recorder.notes.iter().all(told) && recorder.notes.len() == usize::from(destroy.is_some()), "{:?}", recorder.notes);
-    recorder.history
+    recorder.steps.into_iter().map(|(record, _)| record).collect()
 }
 
 fn reference(problem: &Problem) -> Vec<StepRecord> {
@@ -190,9 +164,9 @@ fn a_lost_device_is_one_clear_error() {
     let start = |context, models| Gpu::<f64>::new(context, models).unwrap();
     let Some((problem, mut backend)) = on_device("a_lost_device_is_one_clear_error", Precision::F64, start) else { return };
     let context = backend.context().unwrap().clone();
-    let mut recorder = Recorder { history: Vec::new(), notes: Vec::new(), destroy: Some((1, &context)) };
+    let mut recorder = Recorder { destroy: Some((1, &context)), ..Recorder::default() };
     let newton = problem.newton().unwrap();
     let error = Drive::new(&problem, &mut backend, 0, newton).run(&mut recorder).unwrap_err().to_string();
     assert!(error.contains("device failed") && error.contains("--device cpu"), "{error}");
-    assert_eq!(recorder.history.len(), 2, "{error}");
+    assert_eq!(recorder.steps.len(), 2, "{error}");
 }

@@ -147,7 +147,7 @@ typedef struct asperity_state {
     asperity_real stiffened;  /* g - 1: by what the contact is wider than its F_N, as shear took F_N and left its radius */
     asperity_real vertex[2];
     asperity_real slider[3][ASPERITY_SLIDERS]; /* forces along the two axes, and radial */
-    asperity_real hint[3];    /* how the last step that yielded went: where Newton's method begins, no more */
+    asperity_real hint[3];    /* how the last plastic step went; it only tells Newton's method where to begin */
 } asperity_state;
 #define ASPERITY_NUMBERS (14 + 3 * ASPERITY_SLIDERS) /* of a memory */
 
@@ -200,7 +200,7 @@ typedef struct asperity_tangent {
 #define ASPERITY_ALL_GUESSES 65536             /* and of all in a step */
 #define ASPERITY_PARTS 256                     /* of a step where neither does (tests/law/unsolved.c counts what is left) */
 #define ASPERITY_SHORT (1.0 / 15.0)            /* greatest step over mu on the way to a ratio (the same) */
-#define ASPERITY_HINT_SHORT 0.06               /* way to the trial's ratio over mu, up to which a step begins where the last one had it */
+#define ASPERITY_HINT_SHORT 0.06               /* greatest way to the trial's ratio over mu of a step that begins by its hint (benches/law/fit_hint.py) */
 #define ASPERITY_TOLERANCE 1e-12               /* of F_N over the yield force and of F_T/F_N */
 
 /* Whether a number is finite, also where the compiler was told that all are. */

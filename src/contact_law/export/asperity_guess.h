@@ -311,8 +311,8 @@ ASPERITY_FN asperity_v asperity_first_guess(const asperity_step *p, asperity_v l
 }
 
 /* Where Newton's method begins in a short step of a contact that has yielded before: as far on the way to the trial's ratio as in its last step that yielded, along the ratio of the
- * start and across it, and with as much of the hardening that the trial would bring. Returns of which contacts; y and r of the others stay. */
-ASPERITY_FN asperity_m asperity_hinted(asperity_step *p, const asperity_v trial[2], asperity_v *y, asperity_v r[2]) {
+ * start and across it, and with as much of the hardening that the trial would bring; `load` is the trial's F_N G/P. Returns for which contacts; y and r of the others stay. */
+ASPERITY_FN asperity_m asperity_hinted(asperity_step *p, const asperity_v trial[2], asperity_v load, asperity_v *y, asperity_v r[2]) {
     const asperity_v *hint = p->s->hint;
     asperity_v per = 1.0 / asperity_root(r[0] * r[0] + r[1] * r[1] + 1e-200), x = trial[0] - r[0], z = trial[1] - r[1], along, across;
     asperity_m hinted = (asperity_size(hint[2]) > 0.0) & (p->old_f_n > 0.0) & (x * x + z * z < ASPERITY_HINT_SHORT * ASPERITY_HINT_SHORT * p->friction * p->friction);
@@ -320,7 +320,7 @@ ASPERITY_FN asperity_m asperity_hinted(asperity_step *p, const asperity_v trial[
     p->axis[1] = r[1] * per;
     p->toward[0] = x * p->axis[0] + z * p->axis[1];
     p->toward[1] = z * p->axis[0] - x * p->axis[1];
-    p->trial = asperity_first_guess(p, p->trial);
+    p->trial = asperity_first_guess(p, load);
     along = hint[0] * p->toward[0];
     across = hint[1] * p->toward[1];
     asperity_put(hinted, r[0], r[0] + (along * p->axis[0] - across * p->axis[1]));
@@ -334,7 +334,7 @@ ASPERITY_FN asperity_v asperity_within(asperity_v x, double least, double most) 
     return asperity_choose(x > least, asperity_choose(x < most, x, asperity_all(most)), asperity_all(least));
 }
 
-/* The hint that a step leaves which yielded, from the ratio at its start. What hardly moved one way says nothing of it. */
+/* The hint that a step leaves in which the contact yielded, from the ratio at its start. Where the way in one direction is too short to tell, that of before stays. */
 ASPERITY_FN void asperity_keep_hint(const asperity_step *p, asperity_m flows, asperity_v y, const asperity_v r[2], const asperity_v start[2], asperity_work *next) {
     asperity_v x = r[0] - start[0], z = r[1] - start[1], along = p->toward[0] * p->toward[0], across = p->toward[1] * p->toward[1], least = 0.01 * (along + across);
     asperity_put(flows & (along > least), next->hint[0], asperity_within((x * p->axis[0] + z * p->axis[1]) / p->toward[0], -2.0, 2.0));

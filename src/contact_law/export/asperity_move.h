@@ -467,7 +467,7 @@ ASPERITY_FN void asperity_solution_slopes(const asperity_step *p, asperity_guess
 ASPERITY_FN asperity_m asperity_move(
     const asperity_table *t, const asperity_work *s, const asperity_twist *twist, asperity_v h, const asperity_v d[2], int what, asperity_step *p, asperity_work *next,
     asperity_guess *ASPERITY_ALONE o) {
-    asperity_v softening, released, r[2], start[2], trial[2], y, guess, gamma, load, factor, elastic[5], none = asperity_all(0.0);
+    asperity_v softening, released, r[2], start[2], trial[2], y, guess, gamma, load, trial_load, factor, elastic[5], none = asperity_all(0.0);
     asperity_m touches, flows, found, hinted;
     int i;
     p->twist = twist;
@@ -518,14 +518,14 @@ ASPERITY_FN asperity_m asperity_move(
     p->radial = asperity_column(t, &p->row, ASPERITY_RADIAL_SLIP);
     p->sudden = asperity_column(t, &p->row, ASPERITY_SUDDEN);
     memcpy(trial, r, sizeof trial);
-    p->trial = load * o->factor;
+    trial_load = load * o->factor;
     factor = asperity_grow_from(p, softening, o->factor, o->cell, r);
     p->rho_log = asperity_choose(p->rho < 1.0 - 1e-12, -1.0 / asperity_logarithm(p->rho), none);
     p->sum = asperity_limits(p->lost, asperity_all(1.0), p->limit);
     y = guess = asperity_first_guess(p, load * factor);
     start[0] = r[0];
     start[1] = r[1];
-    hinted = asperity_hinted(p, trial, &y, r);
+    hinted = asperity_hinted(p, trial, trial_load, &y, r);
     found = asperity_newton(p, flows, &y, r, o);
 #if ASPERITY_SEVERAL
     (void)hinted;

@@ -50,7 +50,7 @@ typedef struct asperity_step {
     asperity_v worn, worn_by[3], share_worn[ASPERITY_CELLS];     /* how far sheared, slopes by h and d, and by it of a slider's share of what all carry */
     asperity_v radial, sudden, rho, rho_log, rho_slope, growing, growing_slope; /* slopes by h */
     asperity_v twisted, kept;                                    /* of the twist, over F_N; what a roll has left of the yield force */
-    asperity_v axis[2], toward[2], trial; /* of a hint: the direction of r at the start, the way to the trial's ratio along and across it, and F_N G/P there */
+    asperity_v axis[2], toward[2], trial; /* of a hint: the direction of r at the start, the way to the trial's ratio along and across it, and the hardening that the trial would bring */
     asperity_m rises;                                            /* whether the yield factor of the elastic trial is above the one from which it grows */
     asperity_v old_f_n, old_f_t[2], old_stored[2];               /* stored across and along the plane */
     asperity_v per_exponent, lost[ASPERITY_CELLS], limit[ASPERITY_CELLS], sum; /* of the sliders; the limits of a contact that is not released */
