@@ -34,8 +34,8 @@ pub struct ContactState {
     /// Forces of the sliders along the two axes and radial, innermost (last to slip) first.
     pub slider: [[f64; SLIDERS]; 3],
     /// How the last plastic step went; it only tells Newton's method where to begin. The share of
-    /// the way to the elastic trial's ratio that it followed, along the ratio of its start and across
-    /// it; its hardening over what the trial would bring, below zero after an elastic step.
+    /// the way to the elastic trial's ratio that it followed, along the ratio of its start and
+    /// across it; its hardening over what the trial would bring, below zero after an elastic step.
     pub hint: [f64; 3],
 }
 
