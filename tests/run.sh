@@ -14,8 +14,20 @@ case "${1:-}" in
     ;;
 esac
 
+# GB that are free here.
+free_space() {
+    df -Pk . | awk 'NR == 2 { print int($4 / 1000 / 1000) }'
+}
+
 step="start"
-trap 'code=$?; [ "$code" -eq 0 ] || echo "tests/run.sh: failed at: $step" >&2' EXIT
+# A full disk shows as a bus error of the linker and the like, which say nothing of it.
+ended() {
+    local code=$?
+    [ "$code" -ne 0 ] || return 0
+    [ "$(free_space)" -gt 0 ] || echo "tests/run.sh: the disk is full, which may be why" >&2
+    echo "tests/run.sh: failed at: $step" >&2
+}
+trap ended EXIT
 begin() {
     step="$1"
     echo "== $step"
@@ -62,6 +74,14 @@ install_readers() {
     python3 -m venv target/python && timeout 300 "$python" -m pip install --quiet --disable-pip-version-check meshio==5.3.5 numpy pandas pyarrow ||
         echo "meshio, pandas and pyarrow could not be installed; the tests that use them will be skipped" >&2
 }
+
+# Builds, environments and what the tests write come to this many GB.
+begin "disk"
+needed=16
+used="$(du -sk target 2>/dev/null | cut -f1 || true)"
+if [ $((${used:-0} / 1000 / 1000 + $(free_space))) -lt "$needed" ]; then
+    echo "tests/run.sh: $(free_space) GB are free here, and a whole run takes up to $needed GB: it may fail for that alone" >&2
+fi
 
 begin "packages"
 install_packages
