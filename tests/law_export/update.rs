@@ -85,8 +85,8 @@ fn no_path_extracts_work() {
                         to[0] = at[0] - virgin.depth * random(-0.2, 0.6);
                     }
                     if leg > 0 && kind > 0.2 {
-                        to[1] = virgin.point.delta_t_slip * random(-1.5, 1.5);
-                        to[2] = virgin.point.delta_t_slip * random(-0.5, 0.5);
+                        to[1] = virgin.point.delta_t_end * random(-1.5, 1.5);
+                        to[2] = virgin.point.delta_t_end * random(-0.5, 0.5);
                     }
                     if leg == 12 {
                         to = [-1e-2 * deepest, 0.0, 0.0]; // back to where it started
