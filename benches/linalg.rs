@@ -4,6 +4,7 @@
 #![allow(missing_docs)]
 
 use asperity::internals::linalg::{BlockMatrix, Hierarchy, LinearSolver, Pattern, SolverKind};
+use asperity::internals::mesh::quality::CORNERS;
 use asperity::internals::mesh::sphere::{SphereSpec, sphere_mesh};
 use asperity::internals::mesh::{Mesh, Prolongation};
 use criterion::{Criterion, criterion_group, criterion_main};

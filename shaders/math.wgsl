@@ -119,23 +119,6 @@ fn log_(x: real) -> real {
     return k * LN2_HIGH + (log1p_series(split.fraction) + k * LN2_LOW);
 }
 
-// ln(1 + x), without cancellation near 0: -infinity at -1, NaN below.
-fn log1p_(x: real) -> real {
-    if x > -0.2928932188134524 && x < 0.41421356237309503 {
-        return log1p_series(x);
-    }
-    let u = 1.0 + x;
-    if !(u > 0.0) || u > REAL_MAX {
-        return log_(u);
-    }
-    // 1 + x = (1 + f) 2^e with f = x/2^e + (1/2^e - 1), which rounds once where 1 + x has lost
-    // digits of x for good
-    let e = split_(u).exponent;
-    let unit = scale_(real(1.0), -e);
-    let k = real(e);
-    return k * LN2_HIGH + (log1p_series(x * unit + (unit - 1.0)) + k * LN2_LOW);
-}
-
 // x^y for x >= 0: 0^0 = 1, 0^y = 0 for y > 0 and infinite for y < 0, NaN for x < 0 unless y = 0.
 // With x = m 2^e the power of two is taken exactly, 2^(e y) = 2^k 2^(e y - k), so that for |y| <= 1
 // (every hardening exponent) the error is that of exp and log over the whole range of x; beyond

@@ -41,14 +41,3 @@ fn sym_component(a: Sym, k: u32) -> real {
     }
     return a.shear[k - 3u];
 }
-
-// The tensor whose component k is 1 (and its transpose) and whose others are 0.
-fn sym_unit(k: u32) -> Sym {
-    var a = Sym(vec3<real>(), vec3<real>());
-    if k < 3u {
-        a.diagonal[k] = 1.0;
-    } else {
-        a.shear[k - 3u] = 1.0;
-    }
-    return a;
-}

@@ -8,7 +8,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::process::{Command, Output};
 
-const LAWS: [&str; 7] = HardeningLaw::WORDS;
+const LAWS: [&str; HardeningLaw::ALL.len()] = HardeningLaw::WORDS;
 const EVALUATIONS: [&str; 4] = ["internal force", "tangent", "contact", "commit"];
 /// Parts of the linear solver, in single precision on a device alone.
 const PARTS: [&str; 5] = ["matrix", "Galerkin", "smoother", "product", "V-cycle"];

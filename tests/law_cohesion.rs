@@ -115,7 +115,7 @@ fn walks(name: &str) -> (LawFile, String, Vec<[f64; 6]>) {
                 3 | 7 => -1.2 * gap.max(1e-6 * radius),
                 _ => state.h + (v.depth + gap) * (drawn(&mut seed) - 0.3),
             };
-            let d = [0, 1].map(|_| v.point.delta_t_slip * drawn(&mut seed) / INCREMENTS as f64);
+            let d = [0, 1].map(|_| v.point.delta_t_end * drawn(&mut seed) / INCREMENTS as f64);
             let from = state.h;
             for k in 1..=INCREMENTS {
                 let h = from + (to - from) * k as f64 / INCREMENTS as f64;

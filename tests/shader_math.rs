@@ -13,7 +13,7 @@ use device::device;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-const FUNCTIONS: [&str; 5] = ["exp_", "expm1_", "log_", "log1p_", "pow_"];
+const FUNCTIONS: [&str; 4] = ["exp_", "expm1_", "log_", "pow_"];
 
 static TABULATE: Kernel = Kernel::new(
     "tabulate",
@@ -36,7 +36,6 @@ fn tabulate(@builtin(global_invocation_id) id: vec3<u32>) {
         case 0u: { values[id.y * count + id.x] = exp_(x); }
         case 1u: { values[id.y * count + id.x] = expm1_(x); }
         case 2u: { values[id.y * count + id.x] = log_(x); }
-        case 3u: { values[id.y * count + id.x] = log1p_(x); }
         default: { values[id.y * count + id.x] = pow_(x, y); }
     }
 }
@@ -45,7 +44,7 @@ fn tabulate(@builtin(global_invocation_id) id: vec3<u32>) {
     ],
 );
 
-/// All five functions at every (x, y): values[function][argument].
+/// All functions at every (x, y): values[function][argument].
 fn tabulate<R: DeviceReal>(context: &GpuContext, arguments: &[[R; 2]]) -> Vec<Vec<R>> {
     let flat: Vec<R> = arguments.iter().flatten().copied().collect();
     let input = context.array("arguments", &flat).unwrap();
@@ -65,7 +64,6 @@ fn reference(function: usize, x: f64, y: f64) -> f64 {
         0 => x.exp(),
         1 => x.exp_m1(),
         2 => x.ln(),
-        3 => x.ln_1p(),
         _ => x.powf(y),
     }
 }
@@ -103,7 +101,7 @@ fn worst<R: DeviceReal>(
 type Range = (usize, &'static str, f64, fn(&mut ChaCha8Rng, f64) -> [f64; 2]);
 
 /// `scale` is the largest exponent of two of the precision.
-const RANGES: [Range; 16] = [
+const RANGES: [Range; 13] = [
     (0, "whole range", 2.0, |rng, scale| [rng.random_range(-0.69 * scale..0.69 * scale), 0.0]),
     (0, "near 0", 2.0, |rng, _| [signed(rng, -12.0, 0.0), 0.0]),
     (1, "whole range", 2.0, |rng, scale| [rng.random_range(-0.69 * scale..0.69 * scale), 0.0]),
@@ -112,14 +110,11 @@ const RANGES: [Range; 16] = [
     (2, "whole range", 2.0, |rng, scale| [rng.random_range(-0.99 * scale..0.99 * scale).exp2(), 0.0]),
     (2, "near 1", 2.0, |rng, _| [1.0 + signed(rng, -6.0, -0.3), 0.0]),
     (2, "one", 2.0, |rng, _| [rng.random_range(0.4..2.5), 0.0]),
-    (3, "near 0", 2.0, |rng, _| [signed(rng, -30.0, -0.31), 0.0]),
-    (3, "one", 2.0, |rng, _| [rng.random_range(-0.99..5.0), 0.0]),
-    (3, "large", 2.0, |rng, scale| [rng.random_range(0.0..0.99 * scale).exp2(), 0.0]),
-    (4, "hardening", 2.5, |rng, _| [10f64.powf(rng.random_range(-20.0..1.0)), rng.random_range(0.0..1.0)]),
-    (4, "negative", 2.5, |rng, _| [10f64.powf(rng.random_range(-20.0..1.0)), rng.random_range(-1.0..0.0)]),
-    (4, "whole range", 2.5, |rng, scale| [rng.random_range(-0.9 * scale..0.9 * scale).exp2(), rng.random_range(-1.0..1.0)]),
-    (4, "powers to 10", 6.0, |rng, _| [rng.random_range(0.1..3.0), rng.random_range(1.0..10.0)]),
-    (4, "powers to 60", 30.0, |rng, _| [rng.random_range(0.5..2.0), rng.random_range(-60.0..60.0)]),
+    (3, "hardening", 2.5, |rng, _| [10f64.powf(rng.random_range(-20.0..1.0)), rng.random_range(0.0..1.0)]),
+    (3, "negative", 2.5, |rng, _| [10f64.powf(rng.random_range(-20.0..1.0)), rng.random_range(-1.0..0.0)]),
+    (3, "whole range", 2.5, |rng, scale| [rng.random_range(-0.9 * scale..0.9 * scale).exp2(), rng.random_range(-1.0..1.0)]),
+    (3, "powers to 10", 6.0, |rng, _| [rng.random_range(0.1..3.0), rng.random_range(1.0..10.0)]),
+    (3, "powers to 60", 30.0, |rng, _| [rng.random_range(0.5..2.0), rng.random_range(-60.0..60.0)]),
 ];
 
 fn signed(rng: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
@@ -171,21 +166,17 @@ fn ends_are_right<R: DeviceReal>() {
         (2, -1.0, 0.0, nan),
         (2, inf, 0.0, inf),
         (2, nan, 0.0, nan),
-        (3, 0.0, 0.0, 0.0),
-        (3, -1.0, 0.0, -inf),
-        (3, -2.0, 0.0, nan),
-        (3, nan, 0.0, nan),
-        (4, 0.0, 0.5, 0.0),
-        (4, 0.0, 0.0, 1.0),
-        (4, 0.0, -0.5, inf),
-        (4, 2.0, 0.0, 1.0),
-        (4, 2.0, 10.0, 1024.0),
-        (4, 0.25, -0.5, 2.0),
-        (4, -1.0, 0.5, nan),
-        (4, 10.0, 1e4, inf),
-        (4, 10.0, -1e4, 0.0),
-        (4, nan, 0.5, nan),
-        (4, 2.0, nan, nan),
+        (3, 0.0, 0.5, 0.0),
+        (3, 0.0, 0.0, 1.0),
+        (3, 0.0, -0.5, inf),
+        (3, 2.0, 0.0, 1.0),
+        (3, 2.0, 10.0, 1024.0),
+        (3, 0.25, -0.5, 2.0),
+        (3, -1.0, 0.5, nan),
+        (3, 10.0, 1e4, inf),
+        (3, 10.0, -1e4, 0.0),
+        (3, nan, 0.5, nan),
+        (3, 2.0, nan, nan),
     ];
     let arguments: Vec<[R; 2]> = cases.iter().map(|c| [R::of(c.1), R::of(c.2)]).collect();
     let values = tabulate(&context, &arguments);

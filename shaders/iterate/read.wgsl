@@ -12,6 +12,59 @@
 
 const READINGS: u32 = 10;
 
+// What a point, or all of them, add to a reading.
+struct Part {
+    scale: real,
+    normal: real,
+    tangential: real,
+    released: real,
+    counts: vec4<u32>,
+}
+
+// Adds contact point k of the iterate `mark.y`; before the step it was as in `mark.x`.
+fn add_point(sum: ptr<function, Part>, case_index: u32, mark: vec4<u32>, k: u32) {
+    let points = dimensions.contact_points;
+    let code = code_of(case_index, mark.y, k);
+    let status = code % 4u;
+    let status_before = status_of(case_index, mark.x, k);
+    let force = force_place(case_index, mark.y, surface[k] & ~ON_SYMMETRY_PLANE);
+    let exerted = vec3<real>(iterates[force], iterates[force + 1u], iterates[force + 2u]);
+    let axes = frame_of(case_index, mark.y, k);
+    let f_n = dot(axes.n, exerted);
+    let row = conditions_place(case_index, mark.y, k);
+    let along = rows[row] * rows[row];
+    let across = rows[row + points] * rows[row + points];
+    let bits = let_go[case_index * points + k];
+    let sticks = (bits & SLIDES) == 0u;
+    if status != OPEN {
+        // Forces at what contact prescribes are in no residual: what is not finite is not to be lost.
+        for (var i = 0u; i < 3u; i++) {
+            if !is_finite(exerted[i]) {
+                (*sum).scale += exerted[i];
+            }
+        }
+        (*sum).scale += abs(f_n);
+        let is_halved = (surface[k] & ON_SYMMETRY_PLANE) != 0u;
+        (*sum).normal += contact_force(axes, exerted, vec2<real>(rows[row], rows[row + points]), is_halved).z;
+        (*sum).tangential += along + across;
+        (*sum).counts.z += 1u;
+    } else if status_before == STICK && sticks {
+        (*sum).released += along;
+        if (code & 8u) == 0u {
+            (*sum).released += across;
+        }
+    }
+    if status == SLIP {
+        (*sum).counts.w += 1u;
+    }
+    if status != status_before {
+        (*sum).counts.x += 1u;
+    }
+    if sticks && status == STICK && (bits & CAME_OFF) != 0u {
+        (*sum).counts.y += 1u;
+    }
+}
+
 @compute @workgroup_size(256)
 fn iterate_read(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     let slot = group.y;
@@ -44,61 +97,19 @@ fn iterate_read(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocati
     }
     plate_force = add_up(local, plate_force);
 
-    var scale: real = 0.0;
-    var normal: real = 0.0;
-    var tangential: real = 0.0;
-    var released: real = 0.0;
-    var count = vec4<u32>();
+    var part: Part;
     for (var k = local; k < points; k += THREADS) {
-        let code = code_of(case_index, mark.y, k);
-        let status = code % 4u;
-        let status_before = status_of(case_index, mark.x, k);
-        let force = force_place(case_index, mark.y, surface[k] & ~ON_SYMMETRY_PLANE);
-        let exerted = vec3<real>(iterates[force], iterates[force + 1u], iterates[force + 2u]);
-        let axes = frame_of(case_index, mark.y, k);
-        let f_n = dot(axes.n, exerted);
-        let row = conditions_place(case_index, mark.y, k);
-        let along = rows[row] * rows[row];
-        let across = rows[row + points] * rows[row + points];
-        let bits = let_go[case_index * points + k];
-        let sticks = (bits & SLIDES) == 0u;
-        if status != OPEN {
-            // Forces at what contact prescribes are in no residual: what is not finite is not to be lost.
-            for (var i = 0u; i < 3u; i++) {
-                if !is_finite(exerted[i]) {
-                    scale += exerted[i];
-                }
-            }
-            scale += abs(f_n);
-            let is_halved = (surface[k] & ON_SYMMETRY_PLANE) != 0u;
-            normal += contact_force(axes, exerted, vec2<real>(rows[row], rows[row + points]), is_halved).z;
-            tangential += along + across;
-            count.z += 1u;
-        } else if status_before == STICK && sticks {
-            released += along;
-            if (code & 8u) == 0u {
-                released += across;
-            }
-        }
-        if status == SLIP {
-            count.w += 1u;
-        }
-        if status != status_before {
-            count.x += 1u;
-        }
-        if sticks && status == STICK && (bits & CAME_OFF) != 0u {
-            count.y += 1u;
-        }
+        add_point(&part, case_index, mark, k);
     }
-    scale = add_up(local, scale);
-    normal = add_up(local, normal);
-    tangential = add_up(local, tangential);
-    released = add_up(local, released);
+    let scale = add_up(local, part.scale);
+    let normal = add_up(local, part.normal);
+    let tangential = add_up(local, part.tangential);
+    let released = add_up(local, part.released);
     let counted = vec4<u32>(
-        count_up(local, count.x),
-        count_up(local, count.y),
-        count_up(local, count.z),
-        count_up(local, count.w),
+        count_up(local, part.counts.x),
+        count_up(local, part.counts.y),
+        count_up(local, part.counts.z),
+        count_up(local, part.counts.w),
     );
     if local == 0u {
         var missing: real = 0.0;

@@ -197,17 +197,6 @@ fn deviatoric_tangent(response: Response) -> DeviatoricTangent {
     return DeviatoricTangent(modulus, n, x);
 }
 
-// c : d of a symmetric d.
-fn deviatoric_tangent_apply(c: DeviatoricTangent, d: Sym) -> Sym {
-    let along_n = sym_dot(c.normal, d);
-    let along_x = sym_dot(c.x, d);
-    let isotropic = deviator(d).tensor;
-    return Sym(
-        c.modulus * isotropic.diagonal + along_x * c.normal.diagonal + along_n * c.x.diagonal,
-        c.modulus * isotropic.shear + along_x * c.normal.shear + along_n * c.x.shear,
-    );
-}
-
 // Component ab of c, a and b counting xx, yy, zz, xy, yz, zx: no factors in it (the identity has
 // 1/2 at [3][3]).
 fn deviatoric_tangent_component(c: DeviatoricTangent, a: u32, b: u32) -> real {

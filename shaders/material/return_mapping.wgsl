@@ -1,14 +1,14 @@
 // The return mapping at every point of every active case: a thread a point. Arrays are
 // [case][component][point].
 
-struct Dimensions {
+struct PointDimensions {
     cases: u32,          // in the arrays
     in_dispatch: u32,    // cases in this dispatch
     points: u32,         // of a case
     reserved: u32,
 }
 
-@group(0) @binding(0) var<uniform> dimensions: Dimensions;
+@group(0) @binding(0) var<uniform> dimensions: PointDimensions;
 @group(0) @binding(1) var<storage, read> active_cases: array<u32>;
 @group(0) @binding(2) var<storage, read> relative_gradient: array<real>;    // 9: f - I, row by row
 @group(0) @binding(3) var<storage, read> committed: array<real>;            // 7: b_e_bar - I, alpha

@@ -108,7 +108,7 @@ pub const TABLES: [(&str, &str); 10] = [
 ];
 
 /// The words of `material.hardening.law`.
-pub const LAWS: [&str; 7] = HardeningLaw::WORDS;
+pub const LAWS: [&str; HardeningLaw::ALL.len()] = HardeningLaw::WORDS;
 
 const UNIT_LABEL: &str = "1 to 16 letters";
 const STRESS: &str = "stress";

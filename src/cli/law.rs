@@ -296,7 +296,7 @@ fn pressed(law: &LawFile, case: &Case, path: &Path) -> Result<(Vec<PathPoint>, V
         return Err(LawError::NoFormulas { path: path.to_owned(), what: "--press" });
     };
     let Prediction { curve, out_of_range, inputs, .. } = predict(law, case, NormalSource::Press)?;
-    let point = |p: &crate::law::data::Point| PathPoint {
+    let point = |p: &crate::law::data::ShearPoint| PathPoint {
         segment: 1,
         h: inputs.h,
         delta_t: p.delta_t,

@@ -1,4 +1,4 @@
-//! Evaluated of a batch of cases: internal forces, tangents, contact, commit. One trait, a CPU and
+//! Evaluation of a batch of cases: internal forces, tangents, contact, commit. One trait, a CPU and
 //! a GPU behind it.
 //!
 //! The batch is the leading dimension everywhere: a call carries one request for each case that

@@ -244,7 +244,7 @@ fn walk(law: &ContactParameters, cohesion: Cohesion, random: &mut ChaCha8Rng) ->
     for leg in 0..8 {
         let kind = random.random::<f64>();
         let v = law.virgin(contact.state.h_max.max(1e-6));
-        let (h, slip) = (contact.state.h, v.point.delta_t_slip * if kind < 0.5 { 1.0 } else { 0.0 });
+        let (h, slip) = (contact.state.h, v.point.delta_t_end * if kind < 0.5 { 1.0 } else { 0.0 });
         let to = match leg {
             0 => deepest * random.random::<f64>(),
             7 => -1.1 * gap.max(1e-6),

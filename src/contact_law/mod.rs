@@ -28,7 +28,7 @@
 //!
 //! A step solves F_N G = rho P and F_T = r F_N for the hardening and r by Newton's method with
 //! exact slopes; where that does not find the root the hardening is bracketed, and a step for which
-//! that finds none either is taken in parts, up to 64.
+//! that finds none either is taken in parts, up to 256.
 //! `benches/law/element.md` has all equations, what fails, and by which term.
 
 pub mod export;

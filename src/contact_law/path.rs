@@ -322,7 +322,7 @@ impl<'a> Follower<'a> {
 
     /// Shears on along `way` to an end at this length, or to full slip.
     fn shear(&mut self, end: Option<([f64; 2], f64)>, hold: Hold) {
-        let slip = if self.state.h_max > 0.0 { self.parameters.virgin(self.state.h_max).point.delta_t_slip } else { 0.0 };
+        let slip = if self.state.h_max > 0.0 { self.parameters.virgin(self.state.h_max).point.delta_t_end } else { 0.0 };
         if !(slip > 0.0) {
             // Nothing touches: it moves freely.
             if let Some(([x, y], _)) = end {

@@ -169,35 +169,11 @@ impl Step<'_> {
         let v = x.map(|x| x / round);
         o.slip = std::array::from_fn(|i| flow.steady * r[i] + flow.sudden * v[i]);
         let along = [self.d[0] - o.slip[0], self.d[1] - o.slip[1], self.radial * hardening];
-        let (mut eta, mut eta_by, mut eta_before) = (1.0, [0.0; 2], 1.0);
-        let away = 1.0 - self.approach / self.state.reach;
-        if !(away > 0.0) {
-            o.reach = e;
-        } else {
-            // The annuli that a release took come back as the contact hardens.
-            let length = constants.narrows * self.reach;
-            let kept = if flows { (-hardening / length).exp() } else { 1.0 };
-            let whole = 1.0 - away * kept;
-            let log = whole.ln();
-            o.reach = e / whole;
-            eta = (gamma * log / self.exponent).exp();
-            eta_before = (gamma * log / self.exponent_before).exp();
-            let by_y = gamma * away * kept * rate / (length * whole) + row.slope[GAMMA] * log;
-            eta_by = [by_y, gamma * kept / (self.state.reach * whole)].map(|by| eta / self.exponent * by);
-        }
+        let (eta, eta_by, eta_before) = self.left(&row, o, rate, flows);
         let before = Limits::new(eta_before, &self.lost_before);
         let limits = Limits::new(eta, &self.lost).worn(&before, LESS);
-        let most = table.friction * o.f_n;
         let [turn, turned, per_turn] = self.twist.map_or([0.0; 3], |twist| twist.beside(flow.steady, flow.sudden * c / round));
-        let (held, sectors) = match self.twist {
-            None => (slide(&self.state.slider, along, stiff, most, &limits, constants.radial_most), None),
-            Some(twist) => {
-                let [_, _, radial] = &self.state.slider;
-                let (held, sectors) =
-                    slide_sectors(&twist.sectors, radial, (along, turn), stiff, most, &limits, constants.radial_most);
-                (held, Some(sectors))
-            }
-        };
+        let (held, sectors) = self.slide((along, turn), stiff, table.friction * o.f_n, &limits);
         (o.forces, o.f_t) = (held.forces, held.f_t);
         let (rho_y, rho_h) = if flows { self.residuals(o, force, rate, r) } else { (0.0, 0.0) };
         Some(Terms {
@@ -224,6 +200,35 @@ impl Step<'_> {
             per_turn,
             sectors,
         })
+    }
+
+    /// What a release left of the annuli, eta, its slopes by y and h, and eta where the contact was
+    /// sheared a little less far; they come back as the contact hardens.
+    fn left(&self, row: &Row, o: &mut Guess, rate: f64, flows: bool) -> (f64, [f64; 2], f64) {
+        let (e, gamma) = (o.approach, row.value[GAMMA]);
+        let away = 1.0 - self.approach / self.state.reach;
+        if !(away > 0.0) {
+            o.reach = e;
+            return (1.0, [0.0; 2], 1.0);
+        }
+        let length = self.table.constants.narrows * self.reach;
+        let kept = if flows { (-o.hardens / length).exp() } else { 1.0 };
+        let whole = 1.0 - away * kept;
+        let log = whole.ln();
+        o.reach = e / whole;
+        let [eta, before] = [self.exponent, self.exponent_before].map(|exponent| (gamma * log / exponent).exp());
+        let by_y = gamma * away * kept * rate / (length * whole) + row.slope[GAMMA] * log;
+        let by = [by_y, gamma * kept / (self.state.reach * whole)].map(|by| eta / self.exponent * by);
+        (eta, by, before)
+    }
+
+    /// The sliders, those of the sectors where it twists, after a displacement and a turn.
+    fn slide(&self, (along, turn): ([f64; 3], f64), stiff: f64, most: f64, limits: &Limits) -> (Held, Option<Box<Sectors>>) {
+        let radial_most = self.table.constants.radial_most;
+        let Some(twist) = self.twist else { return (slide(&self.state.slider, along, stiff, most, limits, radial_most), None) };
+        let [_, _, radial] = &self.state.slider;
+        let (held, sectors) = slide_sectors(&twist.sectors, radial, (along, turn), stiff, most, limits, radial_most);
+        (held, Some(sectors))
     }
 
     /// The part of a twist in yield.

@@ -32,10 +32,10 @@ fn law(yield_stress: f64, peak: f64, h: f64) -> Given {
     let s = 1.0 - 1.0 / (1.0 + 0.02 * (model.lambda(a) - 4.0).max(0.0));
     let n = 1.5 + 1.8 * s;
     let kept = 1.0 - 0.45 * s;
-    let delta_t_slip = 1.5 * FRICTION * f_n0 / k_t * (1.0 + 2.5 * s);
-    let k_t = k_t.max(n * FRICTION * kept * f_n0 / delta_t_slip);
+    let delta_t_end = 1.5 * FRICTION * f_n0 / k_t * (1.0 + 2.5 * s);
+    let k_t = k_t.max(n * FRICTION * kept * f_n0 / delta_t_end);
     Given {
-        point: VirginPoint { a, f_n0, f_n_slip: kept * f_n0, delta_t_slip, k_t, c: 0.0 },
+        point: VirginPoint { a, f_n0, f_n_slip: kept * f_n0, delta_t_end, k_t, c: 0.0 },
         unloading_radius: None,
         backbone: 1.5 - 0.3 * s,
         coefficient: None,
@@ -66,7 +66,7 @@ fn the_shear_at_constant_h_is_the_law_in_any_direction() {
             let (mut worst, mut worst_n): (f64, f64) = (0.0, 0.0);
             for i in 1..=steps {
                 let x: f64 = 1.2 * i as f64 / steps as f64;
-                let d = 1.2 * v.point.delta_t_slip / steps as f64;
+                let d = 1.2 * v.point.delta_t_end / steps as f64;
                 (state, out) = p.update(&state, h, [d * f64::cos(angle), d * f64::sin(angle)]);
                 let [f_n, f_t] = v.sheared(FRICTION, x.min(1.0));
                 let force = out.f_t[0].hypot(out.f_t[1]);
@@ -99,8 +99,8 @@ fn an_oblique_press_and_two_shears_in_100_increments_are_as_in_10_000() {
                     }
                 };
                 go(h, slope * 0.5 * h);
-                go(h, -1.2 * v.delta_t_slip);
-                go(h, 1.2 * v.delta_t_slip);
+                go(h, -1.2 * v.delta_t_end);
+                go(h, 1.2 * v.delta_t_end);
                 found
             };
             let worst = follow(100).iter().zip(&follow(10_000)).fold([0.0_f64; 2], |worst, (coarse, fine)| {
@@ -131,7 +131,7 @@ fn first_loading_is_the_normal_model_it_was_made_from() {
             let v = p.virgin(h);
             assert!((v.point.f_n0 / expected.f_n0 - 1.0).abs() < 6e-3, "{h}: {} {}", v.point.f_n0, expected.f_n0);
             assert!((v.point.a / expected.a - 1.0).abs() < 4e-3);
-            assert!((v.point.delta_t_slip / expected.delta_t_slip - 1.0).abs() < 5e-3);
+            assert!((v.point.delta_t_end / expected.delta_t_end - 1.0).abs() < 5e-3);
             let step = 1e-5 * h;
             let difference = (p.virgin(h + step).point.f_n0 - p.virgin(h - step).point.f_n0) / (2.0 * step);
             assert!((v.slope / difference - 1.0).abs() < 1e-5);
@@ -256,7 +256,7 @@ fn no_path_gives_back_more_than_the_energy_stored() {
             let mut at = [0.0; 3];
             let mut through = 0.0;
             let steps = 200;
-            for target in legs(seed, 12, [h, p.virgin(h).point.delta_t_slip]) {
+            for target in legs(seed, 12, [h, p.virgin(h).point.delta_t_end]) {
                 let from = at;
                 let step: [f64; 3] = std::array::from_fn(|i| (target[i] - from[i]) / steps as f64);
                 for k in 1..=steps {
@@ -288,7 +288,7 @@ fn the_update_is_odd_and_turns_with_its_axes() {
     let (cosine, sine) = (0.3f64.cos(), 0.3f64.sin());
     let turn = |v: [f64; 2]| [cosine * v[0] + sine * v[1], -sine * v[0] + cosine * v[1]];
     for p in pairs() {
-        let slip = p.virgin(0.04).point.delta_t_slip;
+        let slip = p.virgin(0.04).point.delta_t_end;
         let mut states = [ContactState::default(); 3];
         let mut at = [0.0; 3];
         for target in legs(7, 20, [0.04, slip]) {
@@ -324,7 +324,7 @@ fn the_tangents_are_the_derivatives() {
     let p = pair(400.0, 0.0);
     let h = 0.04;
     let v = p.virgin(h);
-    let slip = v.point.delta_t_slip;
+    let slip = v.point.delta_t_end;
     let (start, _) = pressed(&p, h, 5);
     // On the virgin curve, turning on it, at full slip, on the way back, on the virgin curve of the
     // other side, and partly unloaded.
@@ -448,11 +448,11 @@ fn cycles_of_the_simulation_are_followed() {
         let (a, f_n0) = (model.contact_radius(h), 0.975 * model.force(h));
         let mindlin = 8.0 * sphere.shear_modulus() * a / 1.7;
         let s = ((model.lambda(a) - 4.0).max(0.0) / 90.0).min(1.0);
-        let delta_t_slip = 1.5 * 0.3 * f_n0 / mindlin * (1.0 + 2.2 * s);
+        let delta_t_end = 1.5 * 0.3 * f_n0 / mindlin * (1.0 + 2.2 * s);
         let (n, kept) = (1.5 + 2.3 * s, 1.0 - 0.31 * s);
         let k_t = mindlin / (1.0 + 1.9 * a * s);
         Given {
-            point: VirginPoint { a, f_n0, f_n_slip: kept * f_n0, delta_t_slip, k_t, c: 0.0 },
+            point: VirginPoint { a, f_n0, f_n_slip: kept * f_n0, delta_t_end, k_t, c: 0.0 },
             unloading_radius: None,
             backbone: 1.2,
             coefficient: None,
@@ -543,7 +543,7 @@ fn a_contact_stiffer_than_hertz_gains_nothing_and_keeps_its_law() {
         let k_t0 = 8.0 * SPHERE.shear_modulus() * a / (2.0 - SPHERE.poissons_ratio);
         let slip = 1.5 * FRICTION * f_n0 / k_t0;
         Given {
-            point: VirginPoint { a, f_n0, f_n_slip: f_n0, delta_t_slip: slip, k_t: k_t0, c: 0.0 },
+            point: VirginPoint { a, f_n0, f_n_slip: f_n0, delta_t_end: slip, k_t: k_t0, c: 0.0 },
             unloading_radius: None,
             backbone: 1.5,
             coefficient: None,
@@ -569,7 +569,7 @@ fn a_contact_stiffer_than_hertz_gains_nothing_and_keeps_its_law() {
         assert!(v.gamma == 1.5 && v.depth <= end * (1.0 + 1e-12), "{end}: {} {}", v.gamma, v.depth / end);
         let mut state = now.0;
         for i in 1..=50 {
-            let (next, out) = p.update(&state, end, [0.024 * v.point.delta_t_slip, 0.0]);
+            let (next, out) = p.update(&state, end, [0.024 * v.point.delta_t_end, 0.0]);
             state = next;
             let size = FRICTION * v.point.f_n_slip * (1.0 - (1.0 - (0.024 * f64::from(i)).min(1.0)).powf(1.5));
             assert!((out.f_t[0] - size).abs() < 1.2e-2 * FRICTION * out.f_n, "{end} {i}: {} for {size}", out.f_t[0]);

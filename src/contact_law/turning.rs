@@ -83,7 +83,7 @@ impl Turn {
 
 /// Of a contact at one time.
 #[derive(Clone, Copy, Debug, Default)]
-struct Place {
+struct Rolling {
     /// The radius of all of it, and F_N.
     radius: f64,
     f_n: f64,
@@ -96,7 +96,7 @@ struct Place {
     along: f64,
 }
 
-impl Place {
+impl Rolling {
     /// Where a contact is that was `rolled` so far; `e` is the elastic approach to take where it
     /// has not yet touched.
     fn of(table: &Table, state: &ContactState, e: f64, rolled: f64) -> Self {
@@ -181,7 +181,7 @@ impl Place {
 /// What a roll does before the step: tractions stay behind. Answers how far it has rolled, what it
 /// leaves of the flow, and the energy of the tractions.
 fn leave_behind(
-    before: &Place,
+    before: &Rolling,
     (far, pressed): (f64, f64),
     rolled: f64,
     state: &mut ContactState,
@@ -237,7 +237,7 @@ fn advance(
     let friction = table.friction.max(1e-9);
     let (mut rolled, mut moment, roll) = (turning.rolled, turning.moment, turn.roll);
     let e = state.approach + (h - state.h);
-    let before = Place::of(table, state, e, rolled);
+    let before = Rolling::of(table, state, e, rolled);
     let has_turned = *turning != TurningState::default();
     let mut sectors = if has_turned { turning.sector } else { alike(&state.slider) };
     let mut lost = before.energy(&sectors, moment) + 0.5 * before.radius * twisting(&sectors) * turn.twist;
@@ -259,7 +259,7 @@ fn advance(
     let twist = Twist { vertex: turning.vertex, kept, flows, sectors, ..before.try_twist(friction, along, ratio) };
     let (next, response, held) = moved_with(table, &from, Some(&twist), h, d);
     let (sector, vertex) = held.unwrap_or((Sectors::default(), turning.vertex));
-    let after = Place::of(table, &next, 0.0, rolled);
+    let after = Rolling::of(table, &next, 0.0, rolled);
     if after.dent > before.dent {
         rolled *= (-CONSTANTS.roll_press * (after.dent - before.dent) / (after.dent + after.approach)).exp();
     }

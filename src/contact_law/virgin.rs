@@ -31,7 +31,7 @@ const LEAST_RADII: f64 = 1e-6;
 const LN_FORCE: usize = 0;
 const LN_UNLOADING_RADIUS: usize = 1;
 const SLIP_SHARE: usize = 2;
-const LN_SLIP: usize = 3;
+const LN_END: usize = 3;
 const COEFFICIENT: usize = 4;
 const RADII: usize = 5;
 const BACKBONE: usize = 6;
@@ -111,10 +111,10 @@ pub struct VirginPoint {
     pub a: f64,
     /// Normal force F_N0 before any shear, force.
     pub f_n0: f64,
-    /// Normal force at full slip, force.
+    /// Normal force where the curves of the shear end, force.
     pub f_n_slip: f64,
-    /// Displacement at which the curves end, delta_T_end, length.
-    pub delta_t_slip: f64,
+    /// Displacement there, length.
+    pub delta_t_end: f64,
     /// Tangential stiffness without slip and plastic flow, force over length: that of a reversal.
     pub k_t: f64,
     /// c of an oblique press, d(delta_T)/dh = 2 c r/(1 - c r^2) with r = F_T/F_N.
@@ -182,7 +182,7 @@ impl FirstLoading {
                 ("a", p.a),
                 ("F_N0", p.f_n0),
                 ("F_N_slip", p.f_n_slip),
-                ("delta_T_end", p.delta_t_slip),
+                ("delta_T_end", p.delta_t_end),
                 ("k_T", p.k_t),
                 ("unloading_radius", unloading_radius.unwrap_or(p.a)),
                 ("backbone", backbone),
@@ -194,9 +194,9 @@ impl FirstLoading {
             }
             let share = (p.f_n_slip / p.f_n0).min(1.0);
             let c = coefficient.unwrap_or(f64::NAN);
-            let (ln_force, ln_slip, ln_stiffness) = (p.f_n0.ln(), p.delta_t_slip.ln(), p.k_t.ln());
+            let (ln_force, ln_end, ln_stiffness) = (p.f_n0.ln(), p.delta_t_end.ln(), p.k_t.ln());
             let unloading = unloading_radius.unwrap_or(p.a);
-            *row = [ln_force, unloading.ln(), share, ln_slip, c, p.a / unloading, backbone, ln_stiffness];
+            *row = [ln_force, unloading.ln(), share, ln_end, c, p.a / unloading, backbone, ln_stiffness];
         }
         let mut shapes = [[[0.0; POINTS]; 2]; LEVELS];
         for (i, shape) in shapes.iter_mut().enumerate() {
@@ -260,7 +260,7 @@ impl FirstLoading {
         for row in &mut scaled.table {
             row[LN_FORCE] += force;
             row[LN_UNLOADING_RADIUS] += length;
-            row[LN_SLIP] += length;
+            row[LN_END] += length;
             row[LN_STIFFNESS] += stiffness;
         }
         scaled
@@ -438,14 +438,14 @@ impl FirstLoading {
         // A cubic may undershoot where the law has a step.
         let radii = value(RADII).max(LEAST_RADII);
         let gamma = self.exponent_of(unloading, radii, f_n0);
-        let (delta_t_slip, backbone) = (value(LN_SLIP).exp(), value(BACKBONE));
+        let (delta_t_end, backbone) = (value(LN_END).exp(), value(BACKBONE));
         // The elastic sliders must not be slower to slip than the curve of the shear.
-        let k_t = value(LN_STIFFNESS).exp().max(backbone * self.friction * f_n0 / delta_t_slip);
+        let k_t = value(LN_STIFFNESS).exp().max(backbone * self.friction * f_n0 / delta_t_end);
         let point = VirginPoint {
             a: radii * unloading,
             f_n0,
             f_n_slip: value(SLIP_SHARE).min(1.0) * f_n0,
-            delta_t_slip,
+            delta_t_end,
             k_t,
             c: value(COEFFICIENT).max(0.0),
         };

@@ -11,7 +11,7 @@ use crate::output::{OutputDirectory, StepRecord, Summary, SummaryInputs, read_hi
 
 /// One point of a shear, as sizes, in the case's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct ShearPoint {
     /// |delta_T|.
     pub delta_t: f64,
     /// F_T in the direction of the shear.
@@ -46,7 +46,7 @@ pub struct Sample {
     /// The normalised variables before the shear.
     pub variables: Variables,
     /// The shear, from its start (delta_T = 0, F_T = 0, F_N = F_N0) to full slip.
-    pub curve: Vec<Point>,
+    pub curve: Vec<ShearPoint>,
     /// How finely it was meshed.
     pub elements_per_contact_radius: usize,
     /// The curve is that of its mesh: no limit of fine meshes is known.
@@ -235,12 +235,12 @@ pub fn at_the_limit(history: &[StepRecord]) -> Vec<StepRecord> {
 }
 
 /// The first shear as far as it goes in one direction, its start included.
-fn first_stroke(history: &[StepRecord], f_n0: f64) -> Vec<Point> {
-    let mut curve = vec![Point { delta_t: 0.0, f_t: 0.0, f_n: f_n0 }];
+fn first_stroke(history: &[StepRecord], f_n0: f64) -> Vec<ShearPoint> {
+    let mut curve = vec![ShearPoint { delta_t: 0.0, f_t: 0.0, f_n: f_n0 }];
     let first = history.iter().position(|record| record.segment == 1).unwrap_or(history.len());
     let direction = history.get(first).map_or(1.0, |record| record.delta_t.signum());
     for record in history[first..].iter().take_while(|record| record.segment == 1) {
-        let point = Point { delta_t: direction * record.delta_t, f_t: direction * record.f_t, f_n: record.f_n };
+        let point = ShearPoint { delta_t: direction * record.delta_t, f_t: direction * record.f_t, f_n: record.f_n };
         if curve.last().is_some_and(|last| point.delta_t <= last.delta_t) {
             break;
         }

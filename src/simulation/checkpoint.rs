@@ -22,8 +22,8 @@ use crate::solver::pose::{MODES, Pose, product, rotation};
 const LARGEST: f64 = 1e9;
 /// Most of what is counted along a path.
 const MOST_COUNTED: usize = 1_000_000_000;
-/// Targets are never taken in more than 2^2 parts.
-const MOST_PACE: u32 = 2;
+/// Targets are taken in 2^2 parts at most. Half and twice of the exponent: `benches/constants`.
+pub(super) const FINEST: u32 = 2;
 
 /// The committed state of the drive, scaled.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -272,7 +272,7 @@ impl Snapshot {
         let PathPosition { segment, reached, wasted, cutbacks, depth, pace, .. } = *place;
         let counts = [segment, reached, wasted, cutbacks, depth, state.record.step, place.waiting.len()];
         let most = counts.into_iter().max().unwrap_or(0);
-        if most > MOST_COUNTED || pace > MOST_PACE {
+        if most > MOST_COUNTED || pace > FINEST {
             return Some(format!("a count of {} on its path", most.max(pace as usize)));
         }
         None

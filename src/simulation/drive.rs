@@ -11,7 +11,7 @@ mod widening;
 use std::sync::Arc;
 
 use super::SimulationError;
-use super::checkpoint::{Committed, PathPosition, Snapshot};
+use super::checkpoint::{Committed, FINEST, PathPosition, Snapshot};
 pub use super::ending::{Ending, Outgrowth};
 use super::equator;
 use super::observer::Displacement;
@@ -60,7 +60,8 @@ pub struct Drive<'a> {
 /// Share of the last step by which a press step is extrapolated. Measured: 0.45 to 0.75 need the
 /// same iterations, a third fewer than none. Half and twice of it: `benches/constants`.
 const PRESS_EXTRAPOLATION: f64 = 0.6;
-/// See [`Drive::attempt_stuck`]; all but the first only after a step was bisected so often.
+/// See [`Drive::attempt_stuck`]; all but the first only after a step was bisected so often. Half
+/// and twice of that: `benches/constants`.
 const SLIDING_RATIOS: [f64; 3] = [3.0, 1.0, 0.3];
 const SHALLOW: usize = 3;
 /// After a step that failed the targets are taken in half as long parts, until a step takes no more
@@ -69,8 +70,6 @@ const EASY: usize = 6;
 /// The same after a step under full stick that took more iterations than this: points come off and
 /// land in it one by one. Half and twice of it: `benches/constants`.
 const SLOW: usize = 12;
-/// Targets are taken in 2^2 parts at most.
-const FINEST: u32 = 2;
 
 impl<'a> Drive<'a> {
     /// Prepares to follow the problem's path on a backend whose case `case` is the problem's model

@@ -37,7 +37,8 @@ struct PolarPlace {
     closed: bool,
 }
 
-/// Width of the ring that the pressure profile is taken from, in spacings.
+/// Width of the ring that the pressure profile is taken from, in spacings. Half and twice of this
+/// and of the numbers below: `benches/constants`.
 const RING: f64 = 4.0;
 /// Width of the rim outside the ring, in spacings: its points carry more or less than their share.
 const RIM: f64 = 1.0;

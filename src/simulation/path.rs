@@ -67,9 +67,10 @@ pub const SHEAR_GROWTH: f64 = 1.3;
 /// them in fully plastic contacts). Half and twice of it: `benches/constants`.
 const SHEAR_RANGE: f64 = 4.5;
 /// Friction beyond which the yield stress in shear, not friction, limits the traction: k/p =
-/// 0.577/2.8, with a margin.
+/// 0.577/2.8, with a margin. Half and twice of it: `benches/constants`.
 const FRICTION_LIMIT: f64 = 0.3;
-/// First steps of a press, which grow; they are worth half as many of the others.
+/// First steps of a press, which grow; they are worth half as many of the others. Half and
+/// twice of it: `benches/constants`.
 const GROWING_STEPS: usize = 4;
 /// Steps of an unloading over its estimated elastic recovery. Half and twice of it:
 /// `benches/constants`.
@@ -81,10 +82,11 @@ pub const RELEASE_STEPS: f64 = 12.0;
 /// twice of it: `benches/constants`.
 const LARGEST_SHEAR_STEP: f64 = 0.05;
 /// No step turns the sphere by more than this angle, in rad: what slips is moved along a chord in
-/// it, and friction would point beside the way by half of the angle.
+/// it, and friction would point beside the way by half of the angle. Half and twice of it:
+/// `benches/constants`.
 const LARGEST_TURN: f64 = 0.1;
 /// Most steps after the first part of a shear of given length: where nothing touches, say, the slip
-/// displacement says nothing.
+/// displacement says nothing. Half and twice of it: `benches/constants`.
 const MOST_LATER_STEPS: f64 = 120.0;
 
 impl Target {

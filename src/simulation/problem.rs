@@ -78,7 +78,8 @@ const SHEAR_STEPS: usize = 15;
 /// 130 with 449 with none. Half and twice of either: `benches/constants`.
 const COUPLE_LINEAR: f64 = 0.3;
 const COUPLE_FIRST: f64 = 0.002;
-/// Poisson's ratio; see [`Problem::pressed_in_full`].
+/// Poisson's ratio; see [`Problem::pressed_in_full`]. Half and twice of this and of the numbers
+/// below: `benches/constants`.
 const NEARLY_INCOMPRESSIBLE: f64 = 0.42;
 /// See [`Problem::pressed_in_full`].
 const UNLIKE_STIFFNESS: f64 = 2.0;

@@ -14,7 +14,8 @@ const SMALLEST_FINE_ZONE: f64 = *FINE_ZONES.start();
 /// Largest fine zone in contact radii; beyond it the contact radius that is meshed for grows too,
 /// and with it the elements.
 pub const LARGEST_FINE_ZONE: f64 = *FINE_ZONES.end();
-/// A zone is made so much larger than the reach along the whole path.
+/// A zone is made so much larger than the reach along the whole path. Half and twice of what is
+/// over 1, of this and of the next: `benches/constants`.
 pub const MARGIN: f64 = 1.15;
 /// A zone is made so much larger than a reach that will go on growing.
 pub const BLIND_MARGIN: f64 = 1.5;

@@ -26,11 +26,13 @@ use crate::mesh::Mesh;
 /// iterations: it is plastic loading and unloading that the iteration has to find. Half and twice
 /// of it: `benches/constants`.
 const FORCING_GAMMA: f64 = 2.0;
-/// The first linear system of a step is solved no further than this.
+/// The first linear system of a step is solved no further than this. Half and twice of it:
+/// `benches/constants`.
 const TIGHTEST_FIRST: f64 = 1e-4;
 /// A held normal force is met to this share of it. Half and twice of it: `benches/constants`.
 const HELD_TOLERANCE: f64 = 5e-5;
-/// Where a step has been bisected again and again, to this.
+/// Where a step has been bisected again and again, to this. Half and twice of it:
+/// `benches/constants`.
 const HELD_AT_LAST: f64 = 2e-4;
 /// Tangential residuals of points in contact against the friction that the normal force can bear.
 /// At mu = 0.3 the tolerance of the merit is the same.
@@ -43,7 +45,7 @@ const KINK: f64 = 3.0;
 
 /// A step that has used up its iterations goes on, up to twice as many, as long as so many of them
 /// lowered the merit by this factor. Not where it has only a few: who asks for that means it. Half
-/// and twice of the factor: `benches/constants`.
+/// and twice of each: `benches/constants`.
 const LAST_ITERATIONS: usize = 3;
 const CONVERGING: f64 = 0.2;
 const FEW_ITERATIONS: usize = 10;
@@ -55,7 +57,8 @@ const SINGLE: f64 = 1e-4;
 /// areas of the order of R^2.
 const ROUNDING: f64 = 1e-14;
 /// Force by which merits are scaled before anything has ever touched (a fully plastic contact of
-/// a = 0.03 R at sigma_Y = E/1000 carries it).
+/// a = 0.03 R at sigma_Y = E/1000 carries it). Half and twice of this and of the next:
+/// `benches/constants`.
 const UNLOADED_SCALE: f64 = 1e-5;
 /// Share of the largest normal force so far that measures residuals when nothing touches.
 const LOST_SHARE: f64 = 1e-4;

@@ -206,11 +206,11 @@ fn structs_are_laid_out_alike_on_both_sides() {
         smoothing_steps);
     let batch = of_host!(scratch::Dimensions: cases, in_dispatch, nodes, elements, contact_points, blocks, own_elements,
         materials, start_numbers, trial_numbers);
-    let points = of_host!(material::Dimensions: cases, in_dispatch, points);
+    let points = of_host!(material::PointDimensions: cases, in_dispatch, points);
     let mut seen = [0; 4];
     for (kernel, module) in modules() {
-        let of_dimensions = if kernel == "return_mapping_points" { (3, &points) } else { (2, &batch) };
-        for (name, (at, expected)) in [("Record", (0, &record)), ("Level", (1, &level)), ("Dimensions", of_dimensions)] {
+        let structs = [("Record", &record), ("Level", &level), ("Dimensions", &batch), ("PointDimensions", &points)];
+        for (at, (name, expected)) in structs.into_iter().enumerate() {
             if let Some(found) = members(&module, name) {
                 assert_eq!(&found, expected, "{name} in {kernel}");
                 seen[at] += 1;

@@ -81,10 +81,10 @@ pub fn flatten<R: Real>(materials: &[Material<R>]) -> Vec<R> {
     numbers
 }
 
-/// The block that `return_mapping.wgsl` calls Dimensions.
+/// The block that `return_mapping.wgsl` calls PointDimensions.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
-pub(super) struct Dimensions {
+pub(super) struct PointDimensions {
     pub cases: u32,
     pub in_dispatch: u32,
     pub points: u32,
@@ -114,7 +114,7 @@ pub struct ReturnMapping<R> {
     tangent: StorageBuffer<R>,
     status: StorageBuffer<u32>,
     active: StorageBuffer<u32>,
-    dimensions: StorageBuffer<Dimensions>,
+    dimensions: StorageBuffer<PointDimensions>,
     bound: Bound,
 }
 
@@ -160,7 +160,7 @@ impl<R: DeviceReal> ReturnMapping<R> {
             return Err(GpuError::Length { what, expected: self.cases, given: active.len() });
         }
         let [cases, in_dispatch, points] = [self.cases, active.len(), self.points].map(|n| n as u32);
-        context.upload(&self.dimensions, &[Dimensions { cases, in_dispatch, points, reserved: 0 }])?;
+        context.upload(&self.dimensions, &[PointDimensions { cases, in_dispatch, points, reserved: 0 }])?;
         context.upload_at(&self.active, 0, active)?;
         context.upload(&self.relative, relative)?;
         context.upload(&self.committed, committed)?;

@@ -38,12 +38,12 @@ typedef struct asperity_moments {
 } asperity_moments;
 
 /* Of a contact at one time: its whole radius, F_N, stiffness in a roll, greatest moment, and of its row D, dent and k_T. */
-typedef struct asperity_place {
+typedef struct asperity_rolling {
     double radius, f_n, stiff, most, approach, dent, along;
-} asperity_place;
+} asperity_rolling;
 
 /* Where a contact is that was rolled so far; `e` is the elastic approach to take where it has not yet touched. */
-ASPERITY_FN void asperity_place_of(const asperity_table *t, const asperity_state *s, double e, double rolled, asperity_place *o) {
+ASPERITY_FN void asperity_rolling_of(const asperity_table *t, const asperity_state *s, double e, double rolled, asperity_rolling *o) {
     double depth = (double)t->first + (double)s->hardened, log_h = asperity_logarithm(depth / (double)t->first), recovered, gamma, force, wide, a;
     double reach = (double)s->reach > 0.0 ? (double)s->reach : e;
     asperity_row row;
@@ -77,7 +77,7 @@ ASPERITY_FN void asperity_place_of(const asperity_table *t, const asperity_state
 }
 
 /* Share of the yield force that a roll has left. */
-ASPERITY_FN double asperity_left_by_roll(const asperity_place *at, double rolled) {
+ASPERITY_FN double asperity_left_by_roll(const asperity_rolling *at, double rolled) {
     double plastic = at->dent / (at->dent + at->approach);
     return plastic > 0.0 ? 1.0 - ASPERITY_ROLL_LOSS * rolled * asperity_exponential(ASPERITY_ROLL_LOSS_FADES * asperity_logarithm(plastic)) : 1.0;
 }
@@ -96,7 +96,7 @@ ASPERITY_FN double asperity_twisting(double sector[ASPERITY_SECTORS][2][ASPERITY
 }
 
 /* Elastic energy of the twist and the roll. */
-ASPERITY_FN double asperity_turning_energy(const asperity_place *at, double sector[ASPERITY_SECTORS][2][ASPERITY_PADDED], const double moment[2]) {
+ASPERITY_FN double asperity_turning_energy(const asperity_rolling *at, double sector[ASPERITY_SECTORS][2][ASPERITY_PADDED], const double moment[2]) {
     const double *per_weight = asperity_per_weights();
     double sum = 0.0, square = moment[0] * moment[0] + moment[1] * moment[1];
     int i, j, c;
@@ -114,7 +114,7 @@ ASPERITY_FN double asperity_turning_energy(const asperity_place *at, double sect
 }
 
 /* The twist's part in yield as a step goes on: it follows its moment over a little way, so that a step that goes nowhere leaves it. */
-ASPERITY_FN double asperity_follow_twist(const asperity_table *t, const asperity_place *at, asperity_twist *twist, double before, double way, double change) {
+ASPERITY_FN double asperity_follow_twist(const asperity_table *t, const asperity_rolling *at, asperity_twist *twist, double before, double way, double change) {
     double mu = (double)t->friction > 1e-9 ? (double)t->friction : 1e-9, to;
     if (!(at->f_n > 0.0) || !(at->radius > 0.0)) {
         return before;
@@ -124,7 +124,7 @@ ASPERITY_FN double asperity_follow_twist(const asperity_table *t, const asperity
 }
 
 /* The rolling moment along a roll, and its work. */
-ASPERITY_FN double asperity_roll_moment(const asperity_place *at, const double roll[2], double moment[2]) {
+ASPERITY_FN double asperity_roll_moment(const asperity_rolling *at, const double roll[2], double moment[2]) {
     double angle = sqrt(roll[0] * roll[0] + roll[1] * roll[1]), kept, work = 0.0, to[2];
     int i;
     if (!(angle > 0.0)) {
@@ -144,7 +144,7 @@ ASPERITY_FN double asperity_roll_moment(const asperity_place *at, const double r
 }
 
 /* What the part of a twist in yield were if all stuck, and by how much slip takes from it. */
-ASPERITY_FN void asperity_try_twist(const asperity_table *t, const asperity_place *at, asperity_twist *twist) {
+ASPERITY_FN void asperity_try_twist(const asperity_table *t, const asperity_rolling *at, asperity_twist *twist) {
     twist->trial = twist->ratio;
     twist->gives = 0.0;
     if (at->f_n > 0.0) {
@@ -157,7 +157,7 @@ ASPERITY_FN void asperity_try_twist(const asperity_table *t, const asperity_plac
 }
 
 /* What a roll by `far` contact radii does before a step that presses by the share `pressed` of h: tractions stay behind. Returns their energy. */
-ASPERITY_FN double asperity_leave_behind(const asperity_place *at, double far, double pressed, double *rolled, asperity_state *state, asperity_twist *twist) {
+ASPERITY_FN double asperity_leave_behind(const asperity_rolling *at, double far, double pressed, double *rolled, asperity_state *state, asperity_twist *twist) {
     double recovered = at->approach / (at->approach + at->dent), lost = 0.0;
     double kept = asperity_exponential(-far / ASPERITY_ROLL_TRACTION * asperity_exponential(-ASPERITY_ROLL_LEAVES * asperity_logarithm(recovered)));
     int i, j;
@@ -211,7 +211,7 @@ ASPERITY_FN void asperity_update_turning(
     double torque = (double)modulus * (double)radius * (double)radius * (double)radius, roll[2], moment[2], way, angle, kept, rolled, e, slip, shrinks, most, lost;
     asperity_state from = *state;
     asperity_real d[2];
-    asperity_place before, after;
+    asperity_rolling before, after;
     asperity_twist twist;
     int i, j;
     memset(moments, 0, sizeof *moments);
@@ -223,7 +223,7 @@ ASPERITY_FN void asperity_update_turning(
     }
     rolled = (double)turning->rolled;
     e = (double)state->approach + (double)h / (double)radius - (double)state->h;
-    asperity_place_of(t, state, e, rolled, &before);
+    asperity_rolling_of(t, state, e, rolled, &before);
     twist.vertex = (double)turning->vertex;
     asperity_begin_turning(state, turning, &twist);
     for (j = 0; j < 2; j++) {
@@ -255,7 +255,7 @@ ASPERITY_FN void asperity_update_turning(
         moments->m_twist = moments->m_roll[0] = moments->m_roll[1] = moments->stored = moments->lost = asperity_no_number();
         return;
     }
-    asperity_place_of(t, next, 0.0, rolled, &after);
+    asperity_rolling_of(t, next, 0.0, rolled, &after);
     if (after.dent > before.dent) {
         rolled *= asperity_exponential(-ASPERITY_ROLL_PRESS * (after.dent - before.dent) / (after.dent + after.approach));
     }

@@ -38,7 +38,7 @@ pub(crate) struct Contact {
 pub(crate) fn write_steps(path: usize, contact: &Contact, deepest: f64, random: &mut Seeded, text: &mut String) {
     let &Contact { e, nu, kind, numbers, radius, ref pair } = contact;
     let friction = pair.friction;
-    let slip = pair.virgin(deepest).point.delta_t_slip;
+    let slip = pair.virgin(deepest).point.delta_t_end;
     let depth = pair.virgin(deepest).depth;
     let mut state = ContactState::default();
     let (mut h, mut d) = (-0.01 * deepest, [0.0; 2]);

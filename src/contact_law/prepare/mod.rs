@@ -83,7 +83,7 @@ fn fill_rows(first: &FirstLoading, table: &mut Table) {
         let point = &virgin.point;
         // The curves are of a contact that slid to the end: before that it was narrower, the more
         // the further it slid for its radius.
-        let wider = 1.0 + costs(&virgin) * constants.widens * point.delta_t_slip / point.a;
+        let wider = 1.0 + costs(&virgin) * constants.widens * point.delta_t_end / point.a;
         // All of the first row is recovered, and never a greater share of h as that grows: so a
         // dent never shrinks.
         let recovered = if i == 0 { 1.0 } else { (virgin.depth * wider / h).min(last) };

@@ -121,7 +121,7 @@ fn way(table: &Table, virgin: &Virgin, h: f64, mut driven: Driven) -> Way {
         let row = table.read(depth, COLUMNS);
         let (dent, force, stiff) = (row.dent, row.value[LN_FORCE], row.value[LN_STIFFNESS]);
         let q = (dent - way.dent[last]).max(0.0) * stiff / (force * constants.vertex_length * mu);
-        let d = at * virgin.point.delta_t_slip;
+        let d = at * virgin.point.delta_t_end;
         let slides = Slides {
             stiff,
             most: mu * f_n,

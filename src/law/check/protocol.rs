@@ -53,7 +53,7 @@ pub(super) fn slip_displacement(parameters: &ContactParameters, h: f64) -> f64 {
     let full = Segment::Shear { shear: ShearTarget::FullSlip, hold: Hold::Indentation };
     let points = follow(parameters, &[Segment::Indentation { indentation: h }, full]);
     let slips = points.iter().find(|p| p.segment == 1 && p.f_t >= FULL * parameters.friction * p.f_n && p.delta_t > 0.0);
-    slips.map_or(parameters.virgin(h).point.delta_t_slip, |point| point.delta_t)
+    slips.map_or(parameters.virgin(h).point.delta_t_end, |point| point.delta_t)
 }
 
 /// The materials of a check without a case, each with three frictions: just yielding, deep plastic,

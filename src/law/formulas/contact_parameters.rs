@@ -54,7 +54,7 @@ impl Law {
             let tangential = std::array::from_fn(|j| f_t(x(j), n));
             let normal = std::array::from_fn(|j| f_n(x(j), m_exponent, n_exponent));
             Given {
-                point: VirginPoint { a: state.a, f_n0, f_n_slip, delta_t_slip: delta_t_end, k_t, c: 0.0 },
+                point: VirginPoint { a: state.a, f_n0, f_n_slip, delta_t_end, k_t, c: 0.0 },
                 unloading_radius: None,
                 // The law has no curve of a reversal: that of an unloading, or of the shear.
                 backbone: unloading_exponent(radius, modulus, state.a, f_n0).min(n),

@@ -4,7 +4,7 @@ use super::model::{Axisymmetric, Law, Parameters};
 use super::normal::NormalState;
 use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
 use crate::law::LawError;
-use crate::law::data::Point;
+use crate::law::data::ShearPoint;
 use crate::law::range::{OutOfRange, clamped};
 use crate::law::variables::Body;
 use crate::output::Recorder;
@@ -29,7 +29,7 @@ pub struct Prediction {
     /// The law of this contact.
     pub parameters: Parameters,
     /// The curve, from delta_T = 0 on; delta_T and F_T have the sign of the shear.
-    pub curve: Vec<Point>,
+    pub curve: Vec<ShearPoint>,
     /// What lies outside of the law's range.
     pub out_of_range: Vec<OutOfRange>,
 }
@@ -62,7 +62,7 @@ pub fn predict(law: &Law, case: &Case, source: NormalSource) -> Result<Predictio
         .into_iter()
         .map(|d| {
             let (f_t, f_n) = law.forces(&parameters, friction, direction * d);
-            Point { delta_t: direction * d, f_t, f_n }
+            ShearPoint { delta_t: direction * d, f_t, f_n }
         })
         .collect();
     let out_of_range = law.body_out_of_range(&body, &inputs);

@@ -2,7 +2,7 @@
 
 use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
 use crate::case;
-use crate::law::data::{Point, Sample};
+use crate::law::data::{Sample, ShearPoint};
 use crate::law::variables::Body;
 
 /// A sample of an elastic sphere that follows Cattaneo and Mindlin exactly.
@@ -13,7 +13,7 @@ pub(in crate::law) fn elastic_sample(friction: f64) -> Sample {
     let contact = CattaneoMindlin::at_indentation(body.sphere, friction, h0);
     let curve = (0..=20)
         .map(|i| contact.slip_displacement() * f64::from(i) / 20.0)
-        .map(|delta_t| Point { delta_t, f_t: contact.force(delta_t), f_n: contact.normal_force })
+        .map(|delta_t| ShearPoint { delta_t, f_t: contact.force(delta_t), f_n: contact.normal_force })
         .collect();
     let variables = body.variables(h0, contact.contact_radius, contact.normal_force);
     Sample {

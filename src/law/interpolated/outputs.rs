@@ -3,7 +3,7 @@
 
 use crate::analytical::{ElasticSphere, cattaneo_mindlin, hertz};
 use crate::contact_law::POINTS;
-use crate::law::data::Point;
+use crate::law::data::ShearPoint;
 use crate::law::table::spline::Spline;
 use crate::law::table::{Against, Level, Measured, backbone_of, cleaned, reversal, unloading_radius};
 use crate::output::SLIP_DISPLACEMENT_RATIO;
@@ -56,7 +56,7 @@ fn elastic(sphere: &ElasticSphere, h: f64) -> [f64; 3] {
 /// The outputs of a simulated contact; `None` if it was not sheared to full slip.
 pub fn outputs(sphere: &ElasticSphere, friction: f64, one: &Measured, body: Against) -> Option<Outputs> {
     let last = one.curve.last()?;
-    let slip = |point: &Point| if point.delta_t > 0.0 { (point.f_t / (friction * point.f_n)).min(1.0) } else { 0.0 };
+    let slip = |point: &ShearPoint| if point.delta_t > 0.0 { (point.f_t / (friction * point.f_n)).min(1.0) } else { 0.0 };
     let slipped = if body == Against::Plane { SLIPPED } else { SLIPPED_PAIR };
     let most = one.curve.iter().map(slip).fold(0.0, f64::max);
     if one.curve.len() < 5 || most < slipped || slip(last) < slipped - FALL {
@@ -64,7 +64,7 @@ pub fn outputs(sphere: &ElasticSphere, friction: f64, one: &Measured, body: Agai
     }
     // Over the square root of delta_T the points of the curve are about even.
     let root: Vec<f64> = one.curve.iter().map(|point| point.delta_t.sqrt()).collect();
-    let spline = |of: &dyn Fn(&Point) -> f64| Spline::through(&root, &one.curve.iter().map(of).collect::<Vec<f64>>());
+    let spline = |of: &dyn Fn(&ShearPoint) -> f64| Spline::through(&root, &one.curve.iter().map(of).collect::<Vec<f64>>());
     let (ratio, normal) = (spline(&slip), spline(&|point| point.f_n / one.f_n0));
     let end = root[root.len() - 1];
     let integral: f64 = (0..INTERVALS)

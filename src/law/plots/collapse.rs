@@ -2,7 +2,7 @@
 //! them.
 
 use super::groups::lambda_bar;
-use crate::law::data::{Point, Sample};
+use crate::law::data::{Sample, ShearPoint};
 use crate::law::formulas::fit::inputs;
 use crate::law::formulas::model::Parameters;
 use crate::law::formulas::shear;
@@ -19,7 +19,7 @@ const END: f64 = 1.4;
 /// F_T over mu F_N_slip: over x, and over the law's f_T(x).
 pub fn tangential(samples: &[Sample], law: Option<&Law>, sheet: Sheet) -> Result<Picture, LawError> {
     let all: Vec<&Sample> = samples.iter().collect();
-    let share = |sample: &Sample, point: &Point| point.f_t / (sample.friction * sample.f_n_slip);
+    let share = |sample: &Sample, point: &ShearPoint| point.f_t / (sample.friction * sample.f_n_slip);
     let name = "F_T / (μ F_{N,slip})";
     let mut left = panel("Tangential force", over(law), name, samples, lines(&all, law, share, |x, _| x));
     for (n, dash) in [(1.5, 12.0), (3.0, 7.0), (8.0, 3.0)] {
@@ -45,7 +45,7 @@ pub fn normal(samples: &[Sample], law: Option<&Law>, sheet: Sheet) -> Result<Opt
     if falling.is_empty() {
         return Ok(None);
     }
-    let share = |sample: &Sample, point: &Point| (sample.f_n0 - point.f_n) / (sample.f_n0 - sample.f_n_slip);
+    let share = |sample: &Sample, point: &ShearPoint| (sample.f_n0 - point.f_n) / (sample.f_n0 - sample.f_n_slip);
     let name = "(F_N0 − F_N) / (F_N0 − F_{N,slip})";
     let left = panel("Fall of the normal force", over(law), name, samples, lines(&falling, law, share, |x, _| x));
     let Some(law) = law else {
@@ -68,7 +68,7 @@ const DOUBLE: (u32, u32) = (1180, 540);
 fn lines(
     samples: &[&Sample],
     law: Option<&Law>,
-    up: impl Fn(&Sample, &Point) -> f64,
+    up: impl Fn(&Sample, &ShearPoint) -> f64,
     across: impl Fn(f64, &Parameters) -> f64,
 ) -> Vec<Series> {
     let owned: Vec<Sample> = samples.iter().map(|&sample| sample.clone()).collect();
@@ -86,7 +86,7 @@ fn lines(
                 n_exponent: 1.0,
             },
         };
-        let x = |point: &Point| point.delta_t / parameters.delta_t_end;
+        let x = |point: &ShearPoint| point.delta_t / parameters.delta_t_end;
         let inside = sample.curve.iter().take_while(|point| x(point) <= 2.0 * END);
         let points = inside.map(|point| (across(x(point), &parameters), up(sample, point))).collect();
         let colour = bar.colour(sample.variables.lambda);

@@ -59,7 +59,7 @@ impl std::fmt::Display for Short {
 fn case_chart(law: &Law, sample: &Sample) -> Chart {
     let parameters = law.contact(&inputs(sample));
     let (slip, mu, f_n0) = (parameters.delta_t_end, sample.friction, sample.f_n0);
-    let computed = |value: fn(&crate::law::data::Point) -> f64, scale: f64| -> Vec<(f64, f64)> {
+    let computed = |value: fn(&crate::law::data::ShearPoint) -> f64, scale: f64| -> Vec<(f64, f64)> {
         sample.curve.iter().map(|point| (point.delta_t / slip, value(point) / scale)).collect()
     };
     let last = sample.curve.last().map_or(1.0, |point| point.delta_t / slip).clamp(1.0, 3.0);

@@ -59,14 +59,14 @@ fn shears(built: &Built) -> Result<Chart, LawError> {
     let checked = |h: f64| built.table.errors.iter().any(|error| error.h == h);
     let mut last: f64 = 0.0;
     for (i, one) in built.measured.iter().filter(|one| checked(one.h)).enumerate() {
-        let slip = parameters.virgin(one.h).point.delta_t_slip;
+        let slip = parameters.virgin(one.h).point.delta_t_end;
         let mut places = vec![[one.h, 0.0]];
         places.extend(one.curve.iter().map(|point| [one.h, point.delta_t]));
         let forces = &drive(&parameters, &places, 4)[1..];
         let name = |name: &'static str| if i == 0 { name } else { "" };
         let x = |delta_t: f64| delta_t / slip;
         last = last.max(one.curve.last().map_or(0.0, |point| x(point.delta_t)));
-        let marks = |value: fn(&crate::law::data::Point) -> f64, scale: f64| {
+        let marks = |value: fn(&crate::law::data::ShearPoint) -> f64, scale: f64| {
             one.curve.iter().map(|point| (x(point.delta_t), value(point) / scale)).collect::<Vec<_>>()
         };
         let line = |k: usize, scale: f64| {

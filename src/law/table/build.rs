@@ -20,6 +20,8 @@ use crate::law::range::Interval;
 use crate::output::SLIP_DISPLACEMENT_RATIO;
 
 /// Least depth of one body that is simulated, unless the greatest is less than ten times as deep.
+/// Half and twice of this and of the numbers below (of a ratio or a number of times, of what is
+/// over 1): `benches/constants`.
 const SHALLOWEST: f64 = 2e-5;
 /// Where an elastic contact is one on a half-space still.
 const HALF_SPACE: f64 = 1e-3;
@@ -227,7 +229,7 @@ fn level(sphere: &ElasticSphere, friction: f64, one: &Measured) -> Level {
     // Over the square root of delta_T the points of the curve are about even.
     let root: Vec<f64> = one.curve.iter().map(|point| point.delta_t.sqrt()).collect();
     let last = one.curve[points_of_curve - 1];
-    let curve = |value: fn(&crate::law::data::Point) -> f64| {
+    let curve = |value: fn(&crate::law::data::ShearPoint) -> f64| {
         let spline = Spline::through(&root, &one.curve.iter().map(value).collect::<Vec<f64>>());
         move |x: f64| if x * end >= last.delta_t { value(&last) } else { spline.at((x * end).sqrt()) }
     };

@@ -8,7 +8,7 @@ use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Segment};
 use crate::contact_law::{Centres, unloading_exponent};
 use crate::law::LawError;
-use crate::law::data::{Point, at_the_limit};
+use crate::law::data::{ShearPoint, at_the_limit};
 use crate::law::study_table::StudyTable;
 use crate::output::{OutputDirectory, StepRecord, read_history};
 
@@ -31,9 +31,9 @@ pub struct Measured {
     /// a0.
     pub a0: f64,
     /// The shear from its start on, as sizes, at the overlap h; the start alone without friction.
-    pub curve: Vec<Point>,
+    pub curve: Vec<ShearPoint>,
     /// The shear back, from the end of the first on; empty if there is none.
-    pub back: Vec<Point>,
+    pub back: Vec<ShearPoint>,
     /// (h, F_N) of the release at the end, from its start on.
     pub release: Vec<[f64; 2]>,
 }
@@ -64,9 +64,9 @@ impl Measured {
         let history = &turned(centres, &at_the_limit(history));
         let (radius, force) = (case.sphere.radius, case.material.youngs_modulus * case.sphere.radius * case.sphere.radius);
         let start = history.iter().rfind(|row| row.segment == 0)?;
-        let mut curve = vec![Point { delta_t: 0.0, f_t: 0.0, f_n: start.f_n / force }];
+        let mut curve = vec![ShearPoint { delta_t: 0.0, f_t: 0.0, f_n: start.f_n / force }];
         let shears = matches!(case.path.get(1), Some(Segment::Shear { .. }));
-        let point = |row: &StepRecord| Point { delta_t: row.delta_t / radius, f_t: row.f_t / force, f_n: row.f_n / force };
+        let point = |row: &StepRecord| ShearPoint { delta_t: row.delta_t / radius, f_t: row.f_t / force, f_n: row.f_n / force };
         let mut lacking = vec![0.0];
         let of = |segment: usize| history.iter().filter(move |row| row.segment == segment);
         let mut back = Vec::new();
@@ -109,7 +109,7 @@ impl Measured {
             // Two spheres that have come off have no such contact, and without friction F_T is
             // none.
             if gain.is_finite() && held.is_finite() {
-                *point = Point { f_t: point.f_t + friction * gain * (1.0 - held), f_n: point.f_n + gain, ..*point };
+                *point = ShearPoint { f_t: point.f_t + friction * gain * (1.0 - held), f_n: point.f_n + gain, ..*point };
             }
         }
         self

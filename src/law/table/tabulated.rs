@@ -194,7 +194,7 @@ impl Tabulated {
                 a: level.a0,
                 f_n0: level.f_n0,
                 f_n_slip: level.slip_share * level.f_n0,
-                delta_t_slip: level.delta_t_end,
+                delta_t_end: level.delta_t_end,
                 // The sliders must not be softer than the curve of the shear at its start.
                 k_t: level.k_t.max(steepest(&level.tangential) * mu * level.slip_share * level.f_n0 / level.delta_t_end),
                 c: 0.0,

@@ -7,7 +7,7 @@ use crate::case::{self, Case, Friction, Opponent};
 use crate::contact_law::Centres;
 use crate::contact_law::path::{drive, follow};
 use crate::law::LawError;
-use crate::law::data::Point;
+use crate::law::data::ShearPoint;
 use crate::law::file::LawFile;
 use crate::output::StepRecord;
 
@@ -32,19 +32,19 @@ fn measured(h: f64, ripple: f64) -> Measured {
     let k_t = 1.6 * a0;
     // In plasticity a shear starts softer than a reversal: the press has slipped outwards.
     let slip = (1.0 + 0.6 * plasticity) * n * MU * f_n0 * (1.0 - fall) / k_t;
-    let at = |x: f64| Point {
+    let at = |x: f64| ShearPoint {
         delta_t: x * slip,
         f_t: MU * f_n0 * (1.0 - fall) * (1.0 - (1.0 - x).powf(n)),
         f_n: f_n0 * (1.0 - fall * (1.0 - (1.0 - x).powf(1.5 * n)).powf(1.3)),
     };
-    let curve: Vec<Point> = (0..=25).map(|i| at((f64::from(i) / 25.0).powi(2))).collect();
+    let curve: Vec<ShearPoint> = (0..=25).map(|i| at((f64::from(i) / 25.0).powi(2))).collect();
     let end = curve[25];
     // Masing's rule with the exponent 1.2, and an unloading with 2.4 E* a.
     let force = MU * end.f_n;
     let back = (0..=20).map(f64::from).map(|i| {
         let d = 3.0 * force / k_t * i / 20.0;
         let fall = 2.0 * force * (1.0 - (1.0 - (k_t * d / (2.4 * force)).min(1.0)).powf(1.2));
-        Point { delta_t: end.delta_t - d, f_t: end.f_t - fall, f_n: end.f_n }
+        ShearPoint { delta_t: end.delta_t - d, f_t: end.f_t - fall, f_n: end.f_n }
     });
     let release = (0..=5).map(f64::from).map(|i| [h - 0.1 * i * end.f_n / (2.4 * a0 / 0.91), end.f_n * (1.0 - 0.1 * i)]);
     Measured { h, f_n0, a0, back: back.collect(), release: release.collect(), curve }

@@ -18,11 +18,12 @@ const STICK_SHARE: f64 = 2e-3;
 /// contact's stiffness, which the simulated one exceeds by a fifth at most. Half and twice of it:
 /// `benches/constants`.
 const LANDING: f64 = 1.25;
-/// F_T has stopped rising when it grows by less than this share over a step.
+/// F_T has stopped rising when it grows by less than this share over a step. Half and twice of it:
+/// `benches/constants`.
 const PLATEAU: f64 = 1e-3;
 /// Strains by which it is tried what flows at the start of a shear, over the mean pressure's: so
 /// much of the yield strain, about. At ten times as much an ideally plastic contact is 0.08 %
-/// softer, at a tenth the rounding of f32 is seen.
+/// softer, at a tenth the rounding of f32 is seen. Half and twice of it: `benches/constants`.
 const STIFFNESS_PROBE: f64 = 1e-4;
 
 impl Drive<'_> {

@@ -12,7 +12,7 @@ use crate::solver::system::fixed_unknowns;
 use crate::solver::systems::Matrix;
 
 /// Relative residual of the responses. Their forces only say how to go on from a plate that exerts
-/// some.
+/// some. Half and twice of it: `benches/constants`.
 const TOLERANCE: f64 = 1e-4;
 
 impl HostIterate {

@@ -22,7 +22,7 @@ use crate::solver::systems::{Matrix, OneBody, Systems};
 /// lack counts twice in their energies. Half and twice of it: `benches/constants`.
 const UNIT_MOTION: f64 = 1e-3;
 /// Systems that are solved at most, and the change of the stiffness at which another would find
-/// nothing new.
+/// nothing new. Half and twice of either: `benches/constants`.
 const MOST_SYSTEMS: usize = 8;
 const SETTLED: f64 = 1e-4;
 /// Unit motions of the plate.

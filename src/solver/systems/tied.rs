@@ -9,7 +9,8 @@ use crate::linalg::fgmres::{Fgmres, System};
 use crate::linalg::{BlockMatrix, LinalgError, Pattern, SolveReport};
 use crate::mesh::Mesh;
 
-/// Iterations after which FGMRES starts over, and after which it gives up.
+/// Iterations after which FGMRES starts over, and after which it gives up. Half and twice of
+/// either: `benches/constants`.
 const RESTART: usize = 60;
 const MAX_ITERATIONS: usize = 120;
 /// A system that stalls is good enough to go on from at this relative residual: the line search

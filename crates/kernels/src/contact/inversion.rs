@@ -10,7 +10,7 @@
 //! go to the images of slaves that they face. All functions add up to one everywhere.
 
 use super::mortar::{COVERED, Face, FaceGrid, GapWeights, SLIVER, add, dual_functions};
-use super::polygon::{Point, area, clip, each_point, gauss_rules};
+use super::polygon::{PlanePoint, area, clip, each_point, gauss_rules};
 
 /// A node is a slave only so far from the images of others, in elements. Meshes that lie half an
 /// element beside their image along the seam would else have twice the slaves there. Half and twice
@@ -29,7 +29,7 @@ const THIN: f64 = 0.2;
 const OF_QUOTIENTS: usize = 6;
 
 /// Calls `f` with the points and weights of a product of Gauss's rules over a convex polygon.
-fn finely(polygon: &[Point], smallest: f64, mut f: impl FnMut(Point, f64)) {
+fn finely(polygon: &[PlanePoint], smallest: f64, mut f: impl FnMut(PlanePoint, f64)) {
     if polygon.len() < 3 || area(polygon) <= smallest {
         return;
     }
@@ -47,7 +47,7 @@ fn finely(polygon: &[Point], smallest: f64, mut f: impl FnMut(Point, f64)) {
 
 /// Which nodes are slaves, from their positions in the plane and their sizes: those at x > 0, and
 /// near x = 0 one of each two that face each other.
-fn slaves(points: &[Point], size: &[f64]) -> Vec<bool> {
+fn slaves(points: &[PlanePoint], size: &[f64]) -> Vec<bool> {
     let key = |n: usize| points[n][0] + TILT * points[n][1];
     let mut near: Vec<usize> = (0..points.len()).filter(|&n| key(n).abs() < WITHIN * size[n]).collect();
     near.sort_by(|&i, &j| key(j).total_cmp(&key(i)).then(i.cmp(&j)));
@@ -69,7 +69,7 @@ fn slaves(points: &[Point], size: &[f64]) -> Vec<bool> {
 
 /// The images of slaves around a place and their shares of it, which add up to one; none if there
 /// are none among the images `near`.
-fn heirs(place: Point, near: &[usize], images: &[Face], is_slave: &[bool]) -> Vec<(usize, f64)> {
+fn heirs(place: PlanePoint, near: &[usize], images: &[Face], is_slave: &[bool]) -> Vec<(usize, f64)> {
     for &m in near {
         let shape = images[m].shape(place);
         if shape.iter().any(|n| *n < -1e-6) {
@@ -86,7 +86,7 @@ fn heirs(place: Point, near: &[usize], images: &[Face], is_slave: &[bool]) -> Ve
 
 /// The weights of all slave nodes whose faces meet the image; arguments as of
 /// [`super::mortar::self_image_weights`].
-pub fn inverted_image_weights(points: &[Point], faces: &[[usize; 4]], size: &[f64]) -> Vec<GapWeights> {
+pub fn inverted_image_weights(points: &[PlanePoint], faces: &[[usize; 4]], size: &[f64]) -> Vec<GapWeights> {
     let is_slave = slaves(points, size);
     let images: Vec<Face> = faces.iter().map(|f| Face::new(f.map(|n| points[n].map(|x| -x)), *f)).collect();
     let grid = FaceGrid::new(&images);
@@ -96,8 +96,8 @@ pub fn inverted_image_weights(points: &[Point], faces: &[[usize; 4]], size: &[f6
         let face = Face::new(nodes.map(|n| points[n]), *nodes);
         let taken = face.nodes.map(|n| is_slave[n]);
         let near = grid.near(&face);
-        let parts: Vec<(usize, Vec<Point>)> = near.iter().map(|&m| (m, clip(&face.corners, &images[m].corners))).collect();
-        let is_met = |part: &(usize, Vec<Point>)| part.1.len() > 2 && area(&part.1) > SLIVER * face.area;
+        let parts: Vec<(usize, Vec<PlanePoint>)> = near.iter().map(|&m| (m, clip(&face.corners, &images[m].corners))).collect();
+        let is_met = |part: &(usize, Vec<PlanePoint>)| part.1.len() > 2 && area(&part.1) > SLIVER * face.area;
         let meets_slaves = parts.iter().filter(|part| is_met(part)).any(|part| images[part.0].nodes.iter().any(|&n| is_slave[n]));
         let is_plain = taken == [true; 4] && !meets_slaves;
         // Every point of the rule: weight, shape functions of the face and of the image, the
@@ -163,10 +163,11 @@ pub fn inverted_image_weights(points: &[Point], faces: &[[usize; 4]], size: &[f6
 
 #[cfg(test)]
 mod tests {
+    use super::super::mortar::under_pressure;
     use super::*;
 
     /// A patch that is its own mirror image in x and in y, its lines bent, moved by `shift`.
-    fn patch(shift: Point) -> (Vec<Point>, Vec<[usize; 4]>) {
+    fn patch(shift: PlanePoint) -> (Vec<PlanePoint>, Vec<[usize; 4]>) {
         let n = 12;
         let at = |i: usize, j: usize| i + (n + 1) * j;
         let place = |i: usize, j: usize| {
@@ -178,7 +179,7 @@ mod tests {
         (points, faces.collect())
     }
 
-    const SHIFTS: [Point; 9] = [
+    const SHIFTS: [PlanePoint; 9] = [
         [0.0, 0.0],
         [0.0375, 0.0],
         [0.0, 0.0625],
@@ -209,18 +210,9 @@ mod tests {
         for shift in SHIFTS {
             let (points, faces) = patch(shift);
             let rows = inverted_image_weights(&points, &faces, &vec![0.25; points.len()]);
-            let mut force = vec![0.0; points.len()];
-            for row in &rows {
-                row.own.iter().for_each(|&(m, w)| force[m] += row.area * w);
-                row.image.iter().for_each(|&(m, w)| force[m] += row.area * w);
-            }
-            let mut area = vec![0.0; points.len()];
-            for nodes in &faces {
-                let face = Face::new(nodes.map(|n| points[n]), *nodes);
-                face.shape_integrals().into_iter().zip(face.nodes).for_each(|(s, n)| area[n] += s);
-            }
+            let (force, area) = under_pressure(&points, &faces, &rows);
             // Near the rim there are faces without an image.
-            let inner = |p: &Point| p[0].abs() < 0.85 - shift[0].abs() && p[1].abs() < 0.85 - shift[1].abs();
+            let inner = |p: &PlanePoint| p[0].abs() < 0.85 - shift[0].abs() && p[1].abs() < 0.85 - shift[1].abs();
             assert!(points.iter().filter(|p| inner(p)).count() > 15);
             for (n, p) in points.iter().enumerate().filter(|(_, p)| inner(p)) {
                 let off = (force[n] - area[n]) / area[n];

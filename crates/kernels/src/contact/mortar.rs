@@ -10,7 +10,7 @@
 //! up to one everywhere. Faces are clipped against the image's faces (Sutherland & Hodgman, Commun.
 //! ACM 17, 1974; see `polygon`) and integrated triangle by triangle.
 
-use super::polygon::{MOST_POINTS, Point, area, clip, clip_at_seam, each_point, gauss_rules};
+use super::polygon::{MOST_POINTS, PlanePoint, area, clip, clip_at_seam, each_point, gauss_rules};
 
 /// What the nodes of both sides contribute to the weighted gap of one slave node. The weights of
 /// each side add up to one.
@@ -45,7 +45,7 @@ const OWN_IMAGE: f64 = 0.25;
 /// whose faces meet the image. `points` are the positions of the surface's nodes in the plane,
 /// `faces` its quadrilaterals (either sense of rotation), `tolerance` the distance to the seam that
 /// counts as none.
-pub fn self_image_weights(points: &[Point], faces: &[[usize; 4]], size: &[f64], tolerance: f64) -> Vec<GapWeights> {
+pub fn self_image_weights(points: &[PlanePoint], faces: &[[usize; 4]], size: &[f64], tolerance: f64) -> Vec<GapWeights> {
     let is_slave = |n: usize| points[n][0] >= -MARGIN * size[n];
     let images: Vec<Face> = faces.iter().map(|f| Face::new(f.map(|n| [-points[n][0], points[n][1]]), *f)).collect();
     let grid = FaceGrid::new(&images);
@@ -118,7 +118,7 @@ pub fn self_image_weights(points: &[Point], faces: &[[usize; 4]], size: &[f64], 
 #[derive(Clone, Copy, Debug)]
 pub struct Surface<'a> {
     /// Positions of the nodes.
-    pub points: &'a [Point],
+    pub points: &'a [PlanePoint],
     /// Nodes of each face.
     pub faces: &'a [[usize; 4]],
 }
@@ -209,13 +209,13 @@ fn seam_functions(face: &Face, is_slave: &impl Fn(usize) -> bool) -> [[f64; 4]; 
 
 /// A quadrilateral of the surface, its corners counter-clockwise.
 pub(super) struct Face {
-    pub corners: [Point; 4],
+    pub corners: [PlanePoint; 4],
     pub nodes: [usize; 4],
     pub area: f64,
 }
 
 impl Face {
-    pub fn new(mut corners: [Point; 4], mut nodes: [usize; 4]) -> Self {
+    pub fn new(mut corners: [PlanePoint; 4], mut nodes: [usize; 4]) -> Self {
         if area(&corners) < 0.0 {
             corners.swap(1, 3);
             nodes.swap(1, 3);
@@ -223,7 +223,7 @@ impl Face {
         Self { area: area(&corners), corners, nodes }
     }
 
-    fn at(&self, [xi, eta]: Point) -> ([f64; 4], [Point; 2]) {
+    fn at(&self, [xi, eta]: PlanePoint) -> ([f64; 4], [PlanePoint; 2]) {
         let n = [(1.0 - xi) * (1.0 - eta), (1.0 + xi) * (1.0 - eta), (1.0 + xi) * (1.0 + eta), (1.0 - xi) * (1.0 + eta)]
             .map(|n| 0.25 * n);
         let by = |d: [f64; 4]| [0, 1].map(|i| (0..4).map(|a| 0.25 * d[a] * self.corners[a][i]).sum());
@@ -231,13 +231,13 @@ impl Face {
     }
 
     /// Shape functions at a point of the plane.
-    pub fn shape(&self, x: Point) -> [f64; 4] {
+    pub fn shape(&self, x: PlanePoint) -> [f64; 4] {
         self.at(self.local(x, [0.0; 2])).0
     }
 
     /// Coordinates on the face of a point of the plane, from -1 to 1: the bilinear map inverted by
     /// Newton's iteration from a guess.
-    fn local(&self, x: Point, mut local: Point) -> Point {
+    fn local(&self, x: PlanePoint, mut local: PlanePoint) -> PlanePoint {
         for _ in 0..20 {
             let (n, [a, b]) = self.at(local);
             let r = [0, 1].map(|i| x[i] - (0..4).map(|c| n[c] * self.corners[c][i]).sum::<f64>());
@@ -261,7 +261,7 @@ impl Face {
     }
 
     /// How many times larger the bilinear map is at one place than at another.
-    fn stretch(&self, local: Point) -> f64 {
+    fn stretch(&self, local: PlanePoint) -> f64 {
         let (_, [a, b]) = self.at(local);
         a[0] * b[1] - a[1] * b[0]
     }
@@ -283,7 +283,7 @@ impl Face {
         sum
     }
 
-    fn bounds(&self) -> [Point; 2] {
+    fn bounds(&self) -> [PlanePoint; 2] {
         let fold =
             |f: fn(f64, f64) -> f64| self.corners.iter().skip(1).fold(self.corners[0], |m, c| [f(m[0], c[0]), f(m[1], c[1])]);
         [fold(f64::min), fold(f64::max)]
@@ -291,13 +291,13 @@ impl Face {
 }
 
 /// See [`Face::map`].
-struct FaceMap([Point; 4]);
+struct FaceMap([PlanePoint; 4]);
 
 impl FaceMap {
     /// Shape functions at a point of the plane, from a guess of its coordinates on the face. Of
     /// Newton's steps each is off by the square of the one before.
     #[inline]
-    fn shape(&self, x: Point, [mut xi, mut eta]: Point) -> [f64; 4] {
+    fn shape(&self, x: PlanePoint, [mut xi, mut eta]: PlanePoint) -> [f64; 4] {
         let Self([middle, along, across, twist]) = self;
         for _ in 0..20 {
             let a = [along[0] + twist[0] * eta, along[1] + twist[1] * eta];
@@ -362,12 +362,12 @@ const NEARLY: f64 = 1e-7;
 /// by rho^-2n where they are analytic in an ellipse of half axes that sum to rho: as large as the
 /// unevenness q of the map over a triangle lets it be, 1/rho + rho = 2/q. So each triangle has as
 /// many points as its faces' unevenness asks for.
-fn exactly(polygon: &[Point], smallest: f64, faces: [&Face; 2], mut f: impl FnMut(f64, [[f64; 4]; 2])) {
+fn exactly(polygon: &[PlanePoint], smallest: f64, faces: [&Face; 2], mut f: impl FnMut(f64, [[f64; 4]; 2])) {
     if polygon.len() < 3 || area(polygon) <= smallest {
         return;
     }
     let maps = faces.map(Face::map);
-    let locals: Vec<[Point; 2]> = polygon.iter().map(|&x| faces.map(|face| face.local(x, [0.0; 2]))).collect();
+    let locals: Vec<[PlanePoint; 2]> = polygon.iter().map(|&x| faces.map(|face| face.local(x, [0.0; 2]))).collect();
     for i in 1..polygon.len() - 1 {
         let triangle = [0, i, i + 1];
         let corners = triangle.map(|k| polygon[k]);
@@ -389,7 +389,7 @@ fn exactly(polygon: &[Point], smallest: f64, faces: [&Face; 2], mut f: impl FnMu
         for &(u, wu) in rule {
             for &(v, wv) in rule {
                 let l = [1.0 - u, u * (1.0 - v), u * v];
-                let mean = |p: &[Point; 3]| [0, 1].map(|c| l[0] * p[0][c] + l[1] * p[1][c] + l[2] * p[2][c]);
+                let mean = |p: &[PlanePoint; 3]| [0, 1].map(|c| l[0] * p[0][c] + l[1] * p[1][c] + l[2] * p[2][c]);
                 let x = mean(&corners);
                 let shapes = [maps[0].shape(x, mean(&guesses[0])), maps[1].shape(x, mean(&guesses[1]))];
                 f(2.0 * size * u * wu * wv, shapes);
@@ -400,7 +400,7 @@ fn exactly(polygon: &[Point], smallest: f64, faces: [&Face; 2], mut f: impl FnMu
 
 /// Faces by the cells of a regular grid that their bounds touch.
 pub(super) struct FaceGrid {
-    origin: Point,
+    origin: PlanePoint,
     cell: f64,
     size: [usize; 2],
     faces: Vec<Vec<usize>>,
@@ -408,7 +408,7 @@ pub(super) struct FaceGrid {
 
 impl FaceGrid {
     pub fn new(faces: &[Face]) -> Self {
-        let bounds: Vec<[Point; 2]> = faces.iter().map(Face::bounds).collect();
+        let bounds: Vec<[PlanePoint; 2]> = faces.iter().map(Face::bounds).collect();
         let low = bounds.iter().fold([f64::INFINITY; 2], |m, b| [m[0].min(b[0][0]), m[1].min(b[0][1])]);
         let high = bounds.iter().fold([f64::NEG_INFINITY; 2], |m, b| [m[0].max(b[1][0]), m[1].max(b[1][1])]);
         let extent = (high[0] - low[0]).max(high[1] - low[1]).max(f64::MIN_POSITIVE);
@@ -423,7 +423,7 @@ impl FaceGrid {
         grid
     }
 
-    fn cells(&self, [low, high]: &[Point; 2]) -> Vec<usize> {
+    fn cells(&self, [low, high]: &[PlanePoint; 2]) -> Vec<usize> {
         let index = |x: f64, c: usize| (((x - self.origin[c]) / self.cell).max(0.0) as usize).min(self.size[c] - 1);
         let [i0, i1] = [index(low[0], 0), index(high[0], 0)];
         let [j0, j1] = [index(low[1], 1), index(high[1], 1)];
@@ -439,12 +439,27 @@ impl FaceGrid {
     }
 }
 
+/// What each node gets of a uniform pressure, as slave and as master, and its share of the area.
+#[cfg(test)]
+pub(super) fn under_pressure(points: &[PlanePoint], faces: &[[usize; 4]], rows: &[GapWeights]) -> (Vec<f64>, Vec<f64>) {
+    let (mut force, mut area) = (vec![0.0; points.len()], vec![0.0; points.len()]);
+    for row in rows {
+        row.own.iter().for_each(|&(m, w)| force[m] += row.area * w);
+        row.image.iter().for_each(|&(m, w)| force[m] += row.area * w);
+    }
+    for nodes in faces {
+        let face = Face::new(nodes.map(|n| points[n]), *nodes);
+        face.shape_integrals().into_iter().zip(face.nodes).for_each(|(s, n)| area[n] += s);
+    }
+    (force, area)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     /// A patch symmetric in x, its lines bent, moved by `shift` along x.
-    fn patch(shift: f64) -> (Vec<Point>, Vec<[usize; 4]>) {
+    fn patch(shift: f64) -> (Vec<PlanePoint>, Vec<[usize; 4]>) {
         let (nx, ny) = (8, 4);
         let mut points = Vec::new();
         for j in 0..=ny {
@@ -472,7 +487,7 @@ mod tests {
             .map(|(i, j)| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)])
             .collect();
         for shift in [0.0, 0.0375, 0.12, -0.3] {
-            let master: Vec<Point> = (0..=ny)
+            let master: Vec<PlanePoint> = (0..=ny)
                 .flat_map(|j| (0..=nx).map(move |i| bent(2.4 * i as f64 / nx as f64 - 1.2, 1.2 * j as f64 / ny as f64)))
                 .map(|[x, y]| [x + shift, y])
                 .collect();
@@ -487,7 +502,7 @@ mod tests {
                 let face = Face::new(nodes.map(|n| master[n]), *nodes);
                 face.shape_integrals().into_iter().zip(face.nodes).for_each(|(s, n)| area[n] += s);
             }
-            let inner = |p: &Point| p[0].abs() < 0.55 - shift.abs() && p[1] < 0.5;
+            let inner = |p: &PlanePoint| p[0].abs() < 0.55 - shift.abs() && p[1] < 0.5;
             assert!(master.iter().any(inner));
             for (n, p) in master.iter().enumerate().filter(|(_, p)| inner(p)) {
                 let off = (force[n] - area[n]) / area[n];
@@ -520,16 +535,7 @@ mod tests {
         for shift in [0.0375, 0.12, 0.13, -0.07, 0.25] {
             let (points, faces) = patch(shift);
             let rows = self_image_weights(&points, &faces, &vec![0.25; points.len()], 1e-9);
-            let mut force = vec![0.0; points.len()];
-            for row in &rows {
-                row.own.iter().for_each(|&(m, w)| force[m] += row.area * w);
-                row.image.iter().for_each(|&(m, w)| force[m] += row.area * w);
-            }
-            let mut area = vec![0.0; points.len()];
-            for nodes in &faces {
-                let face = Face::new(nodes.map(|n| points[n]), *nodes);
-                face.shape_integrals().into_iter().zip(face.nodes).for_each(|(s, n)| area[n] += s);
-            }
+            let (force, area) = under_pressure(&points, &faces, &rows);
             // Near the rim there are faces without an image.
             for (n, p) in points.iter().enumerate().filter(|(_, p)| p[0].abs() < 0.45 - shift.abs() && p[1] < 0.4) {
                 let off = (force[n] - area[n]) / area[n];

@@ -2,7 +2,7 @@
 //! 17, 1974) and the points of quadrature rules over them.
 
 /// A point of the plane in which surfaces meet.
-pub(super) type Point = [f64; 2];
+pub(super) type PlanePoint = [f64; 2];
 
 /// Points of the largest rule along an edge.
 pub(super) const MOST_POINTS: usize = 16;
@@ -19,14 +19,14 @@ const RULE: [([f64; 3], f64); 7] = {
 };
 
 /// Positive where the corners go round counter-clockwise.
-pub(super) fn area(polygon: &[Point]) -> f64 {
+pub(super) fn area(polygon: &[PlanePoint]) -> f64 {
     let n = polygon.len();
     0.5 * (0..n).map(|i| polygon[i][0] * polygon[(i + 1) % n][1] - polygon[(i + 1) % n][0] * polygon[i][1]).sum::<f64>()
 }
 
 /// The part of a polygon left of the line from `from` to `to`.
-fn cut(polygon: &[Point], from: Point, to: Point) -> Vec<Point> {
-    let side = |p: &Point| (to[0] - from[0]) * (p[1] - from[1]) - (to[1] - from[1]) * (p[0] - from[0]);
+fn cut(polygon: &[PlanePoint], from: PlanePoint, to: PlanePoint) -> Vec<PlanePoint> {
+    let side = |p: &PlanePoint| (to[0] - from[0]) * (p[1] - from[1]) - (to[1] - from[1]) * (p[0] - from[0]);
     let mut out = Vec::with_capacity(polygon.len() + 1);
     for (i, p) in polygon.iter().enumerate() {
         let q = &polygon[(i + 1) % polygon.len()];
@@ -43,7 +43,7 @@ fn cut(polygon: &[Point], from: Point, to: Point) -> Vec<Point> {
 }
 
 /// The part of a quadrilateral within another one, both counter-clockwise; empty if there is none.
-pub(super) fn clip(subject: &[Point; 4], window: &[Point; 4]) -> Vec<Point> {
+pub(super) fn clip(subject: &[PlanePoint; 4], window: &[PlanePoint; 4]) -> Vec<PlanePoint> {
     let mut polygon = subject.to_vec();
     for e in 0..4 {
         polygon = cut(&polygon, window[e], window[(e + 1) % 4]);
@@ -55,14 +55,14 @@ pub(super) fn clip(subject: &[Point; 4], window: &[Point; 4]) -> Vec<Point> {
 }
 
 /// The part of a polygon at x >= 0.
-pub(super) fn clip_at_seam(polygon: Vec<Point>) -> Vec<Point> {
+pub(super) fn clip_at_seam(polygon: Vec<PlanePoint>) -> Vec<PlanePoint> {
     if polygon.iter().all(|p| p[0] >= 0.0) { polygon } else { cut(&polygon, [0.0, 1.0], [0.0, 0.0]) }
 }
 
 /// Calls `f` with the points and weights of a rule over a convex polygon. Its triangles meet in its
 /// centroid: from one of its corners they would jump where rounding decides which one is the first,
 /// and what is integrated are no polynomials.
-pub(super) fn each_point(polygon: &[Point], smallest: f64, mut f: impl FnMut(Point, f64)) {
+pub(super) fn each_point(polygon: &[PlanePoint], smallest: f64, mut f: impl FnMut(PlanePoint, f64)) {
     if polygon.len() < 3 || area(polygon) <= smallest {
         return;
     }
@@ -77,7 +77,7 @@ pub(super) fn each_point(polygon: &[Point], smallest: f64, mut f: impl FnMut(Poi
 }
 
 /// The centroid of a convex polygon.
-fn centroid(polygon: &[Point]) -> Point {
+fn centroid(polygon: &[PlanePoint]) -> PlanePoint {
     let [o, ref rest @ ..] = *polygon else { return [0.0; 2] };
     let (mut whole, mut moment) = (0.0, [0.0; 2]);
     for pair in rest.windows(2) {
@@ -122,7 +122,7 @@ mod tests {
     #[test]
     fn a_rule_knows_no_first_corner() {
         let polygon = [[0.0, 0.0], [1.0, 0.1], [1.2, 0.9], [0.3, 1.1]];
-        let sum = |polygon: &[Point]| {
+        let sum = |polygon: &[PlanePoint]| {
             let mut sum = 0.0;
             each_point(polygon, 0.0, |[x, y], weight| sum += weight / (0.3 + x * y));
             sum

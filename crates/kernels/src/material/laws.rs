@@ -44,10 +44,10 @@ impl HardeningLaw {
     pub const ALL: [Self; 7] = [Self::Elastic, Self::Ideal, Self::Linear, Self::Power, Self::Hollomon, Self::Voce, Self::Table];
 
     /// Their words, likewise.
-    pub const WORDS: [&'static str; 7] = {
-        let mut words = [""; 7];
+    pub const WORDS: [&'static str; Self::ALL.len()] = {
+        let mut words = [""; Self::ALL.len()];
         let mut i = 0;
-        while i < 7 {
+        while i < words.len() {
             words[i] = Self::ALL[i].word();
             i += 1;
         }

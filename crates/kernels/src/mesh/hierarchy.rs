@@ -5,7 +5,8 @@
 //! second index and the last") keeps the blocks conforming. Levels need no exact nesting:
 //! interpolation is trilinear in index space and injects at the coarse nodes.
 
-/// No level is made below this number of nodes: the smoother alone solves it.
+/// No level is made below this number of nodes: the smoother alone solves it. Half and twice of it:
+/// `benches/constants`.
 pub const COARSEST_NODES: usize = 300;
 
 /// Sparse interpolation from a coarse level's nodes to a fine level's nodes, in rows of (coarse

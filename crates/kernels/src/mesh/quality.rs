@@ -59,17 +59,12 @@ pub fn scaled_jacobian(corners: &[[f64; 3]; 8]) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Positions of an element's corners.
-pub fn corners(mesh: &Mesh, element: usize) -> [[f64; 3]; 8] {
-    mesh.corners(element)
-}
-
 /// Volume of the mesh, exact for trilinear elements (2 x 2 x 2 Gauss points).
 pub fn volume(mesh: &Mesh) -> f64 {
     let g = 1.0 / 3f64.sqrt();
     (0..mesh.elements.len())
         .map(|e| {
-            let x = corners(mesh, e);
+            let x = mesh.corners(e);
             CORNERS.iter().map(|c| jacobian(&x, c.map(|v| g * v))).sum::<f64>()
         })
         .sum()

@@ -148,7 +148,7 @@ mod tests {
             assert!((quality::volume(&whole) / quality::volume(&half) - 2.0).abs() < 1e-12);
             let area = |mesh: &Mesh| mesh.contact_area.iter().sum::<f64>();
             assert!((area(&whole) / area(&half) - 2.0).abs() < 1e-12);
-            assert!((0..whole.elements.len()).all(|e| quality::scaled_jacobian(&quality::corners(&whole, e)) > 0.0));
+            assert!((0..whole.elements.len()).all(|e| quality::scaled_jacobian(&whole.corners(e)) > 0.0));
             assert!(whole.contact_nodes.is_sorted() && whole.plate_nodes.is_sorted());
             assert!(whole.plate_nodes.iter().all(|&n| whole.nodes[n as usize][2] == 1.0));
             let mut positions: Vec<[u64; 3]> = whole.nodes.iter().map(|x| (*x).map(|x| (x + 0.0).to_bits())).collect();

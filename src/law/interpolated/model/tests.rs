@@ -4,7 +4,7 @@ use crate::case::{Hold, Segment, ShearTarget};
 use crate::contact_law::Centres;
 use crate::contact_law::path::follow;
 use crate::law::LawFile;
-use crate::law::data::Point;
+use crate::law::data::ShearPoint;
 use crate::law::table::Measured;
 
 fn fixture(name: &str) -> std::path::PathBuf {
@@ -247,13 +247,16 @@ fn a_contact_whose_ratio_passes_a_peak_at_full_slip_has_slipped() {
         let at = |x: f64| {
             let ratio = if x < 0.9 { peak * (1.0 - (1.0 - x / 0.9).powi(3)) } else { peak - fall * (x - 0.9) / 0.1 };
             let f_n = f_n0 * (1.0 - 0.2 * x);
-            Point { delta_t: 0.005 * x, f_t: mu * ratio * f_n, f_n }
+            ShearPoint { delta_t: 0.005 * x, f_t: mu * ratio * f_n, f_n }
         };
-        let curve: Vec<Point> = (0..=20).map(|i| at(f64::from(i) / 20.0)).collect();
+        let curve: Vec<ShearPoint> = (0..=20).map(|i| at(f64::from(i) / 20.0)).collect();
         let end = curve[20];
         let share = |i: i32| f64::from(i) / 20.0;
-        let back =
-            (0..=20).map(|i| Point { delta_t: end.delta_t * (1.0 - share(i)), f_t: end.f_t * (1.0 - 2.0 * share(i)), ..end });
+        let back = (0..=20).map(|i| ShearPoint {
+            delta_t: end.delta_t * (1.0 - share(i)),
+            f_t: end.f_t * (1.0 - 2.0 * share(i)),
+            ..end
+        });
         let release = (0..=5).map(|i| [h * (1.0 - 0.1 * share(i)), end.f_n * (1.0 - 2.0 * share(i))]);
         Measured { h, f_n0, a0: 0.1, back: back.collect(), release: release.collect(), curve }
     };

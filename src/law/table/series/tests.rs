@@ -94,7 +94,7 @@ fn two_equal_bodies_are_their_own_table_at_any_radius() {
             assert!((other.a / one.a - 1.0).abs() < 2e-4, "{one:?} {other:?}");
             assert!((other.k_t / one.k_t - 1.0).abs() < 2e-3, "{one:?} {other:?}");
             assert!((other.f_n_slip / one.f_n_slip - 1.0).abs() < 2e-3, "{one:?} {other:?}");
-            let end = one.delta_t_slip;
+            let end = one.delta_t_end;
             let places: Vec<[f64; 2]> = [0.0, 0.02, 0.1, 0.2, 0.4, 0.9].map(|x| [level.h, x * end]).to_vec();
             agree(&drive(&own, &places, 20), &drive(&ours, &places, 20), 6e-3 * one.f_n0);
         }
@@ -160,7 +160,7 @@ fn a_stiff_and_strong_opponent_leaves_all_of_h_and_of_the_flow_to_the_weak_one()
         let half = own.virgin(2.0 * level.h).point;
         assert!((level.f_n0 / half.f_n0 - 1.0).abs() < 1e-3, "{} {}", level.f_n0, half.f_n0);
         assert!((level.a0 / half.a - 1.0).abs() < 1e-2, "{} {}", level.a0, half.a);
-        let places = [0.0, 0.02, 0.1, 0.2, 0.4, 0.9].map(|x| [level.h, 0.5 * x * half.delta_t_slip]);
+        let places = [0.0, 0.02, 0.1, 0.2, 0.4, 0.9].map(|x| [level.h, 0.5 * x * half.delta_t_end]);
         let twice = places.map(|place| place.map(|x| 2.0 * x));
         agree(&drive(&own, &twice, 20), &drive(&ours, &places, 20), 1e-2 * half.f_n0);
     }

@@ -7,4 +7,5 @@ mod solve;
 mod turn;
 
 pub(super) use super::{BlockMatrix, Hierarchy, LinalgError, LinearSolver, Pattern, SolverKind};
+pub(super) use crate::mesh::quality::CORNERS;
 pub(super) use crate::mesh::{Mesh, Prolongation};

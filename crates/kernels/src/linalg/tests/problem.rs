@@ -1,7 +1,7 @@
 //! Small-strain elasticity on a graded brick: the test problems of this room, shared with its
 //! benchmark.
 
-use super::{BlockMatrix, Mesh, Pattern, Prolongation};
+use super::{BlockMatrix, CORNERS, Mesh, Pattern, Prolongation};
 
 /// What is in contact at the patch z = 0, x^2 + y^2 < 0.04 (the brick is a unit cube).
 #[derive(Clone, Copy, PartialEq)]
@@ -194,19 +194,9 @@ fn slip_rows(matrix: &mut BlockMatrix<f64>, node: usize, radius: f64) {
 
 /// Stiffness of a hex8, 2x2x2 Gauss points.
 fn stiffness(corners: &[[f64; 3]; 8], shear: f64, bulk: f64, mean_dilatation: bool) -> [[f64; 24]; 24] {
-    const SIGN: [[f64; 3]; 8] = [
-        [-1.0, -1.0, -1.0],
-        [1.0, -1.0, -1.0],
-        [1.0, 1.0, -1.0],
-        [-1.0, 1.0, -1.0],
-        [-1.0, -1.0, 1.0],
-        [1.0, -1.0, 1.0],
-        [1.0, 1.0, 1.0],
-        [-1.0, 1.0, 1.0],
-    ];
-    let points: [(f64, [[f64; 3]; 8]); 8] = SIGN.map(|at| {
+    let points: [(f64, [[f64; 3]; 8]); 8] = CORNERS.map(|at| {
         let at = at.map(|g| g / 3.0_f64.sqrt());
-        let local = SIGN.map(|s| {
+        let local = CORNERS.map(|s| {
             let f: [f64; 3] = std::array::from_fn(|d| 1.0 + s[d] * at[d]);
             [s[0] * f[1] * f[2] / 8.0, s[1] * f[0] * f[2] / 8.0, s[2] * f[0] * f[1] / 8.0]
         });

@@ -6,7 +6,7 @@
 //! Gauss's circle problem. So the points are moved along their radii until each touches when the
 //! area inside its circle is that of all points before it and half its own: the area in contact
 //! then follows a growing circle to within half a point. The moves are at most a spacing, the lines
-//! of the mesh stay smooth, and nothing is tuned.
+//! of the mesh stay smooth.
 
 use super::butterfly::{BOTTOM, SIDE};
 use super::geometry::Geometry;
@@ -15,6 +15,7 @@ use crate::mesh::connectivity::face_areas;
 use crate::mesh::hierarchy::{Blocks, Site};
 
 /// Rounds of relaxation, and the share of the way that each goes: areas change with the positions.
+/// Half and twice of these and of the numbers below: `benches/constants`.
 const ROUNDS: usize = 60;
 const RELAXATION: f64 = 0.3;
 /// Contact radii to which points touch evenly, if the fine zone reaches so far.

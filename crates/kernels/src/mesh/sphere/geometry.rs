@@ -16,14 +16,15 @@ use super::layout::Layout;
 use crate::mesh::hierarchy::{Blocks, Site};
 use std::f64::consts::FRAC_PI_4;
 
-/// Half-width of the core's floor against that of the surface's centre block.
-const FLOOR_SPREAD: f64 = 1.0;
-/// Polar angle of the core's wall far from the pole.
+/// Polar angle of the core's wall far from the pole. Half and twice of this and of the numbers
+/// below: `benches/constants`.
 const WALL_ANGLE: f64 = 0.62;
 /// Inclination of the depth lines where they meet the core: at the rim of its floor, and far from
 /// the pole.
 const RIM_INCLINATION: f64 = 0.38;
 const WALL_INCLINATION: f64 = 1.15;
+/// Length of a depth line's tangent at the surface over its chord, where the shell is not deeper.
+const START_LENGTH: f64 = 0.9;
 
 /// Smooth step from 0 (x <= 0) to 1 (x >= 1).
 pub fn smooth_step(x: f64) -> f64 {
@@ -52,8 +53,8 @@ pub struct Geometry<'a> {
 impl<'a> Geometry<'a> {
     /// The geometry of `layout`.
     pub fn new(layout: &'a Layout) -> Self {
-        let floor_depth = layout.shell_depth;
-        let floor_width = FLOOR_SPREAD * layout.radii[0];
+        // The core's floor is as wide as the surface's centre block.
+        let (floor_depth, floor_width) = (layout.shell_depth, layout.radii[0]);
         Geometry {
             layout,
             blocks: layout.blocks,
@@ -225,7 +226,7 @@ impl<'a> Geometry<'a> {
         let near = (self.rim_distance / distance).powi(2) * (1.0 + corner).powi(2);
         let inclination = WALL_INCLINATION + (RIM_INCLINATION * (1.0 + corner).powi(2) - WALL_INCLINATION) * near.min(1.0);
         let chord = (end.1[0] - surface.radius).hypot(end.1[1]);
-        self.depth_line(surface, end, self.floor_depth.max(0.9 * chord), inclination, d)
+        self.depth_line(surface, end, self.floor_depth.max(START_LENGTH * chord), inclination, d)
     }
 
     /// A point on the equator, the half sphere |X| = 2: along its meridian.

@@ -4,13 +4,16 @@ use super::butterfly::Butterfly;
 use super::spec::SphereSpec;
 use crate::mesh::MeshError;
 
-/// Depth of the shell under the pole, in contact radii.
+/// Depth of the shell under the pole, in contact radii. Half and twice of this and of the numbers
+/// below (of a growth, of what is over 1): `benches/constants`.
 pub const SHELL_DEPTH: f64 = 1.4;
 /// Growth of the rings' spacing outside the fine zone that the count aims at, up to 16 elements per
 /// contact radius.
 const RING_GROWTH: f64 = 1.22;
 /// Growth of the layers' thickness in the shell that the count aims at.
 const LAYER_GROWTH: f64 = 1.14;
+/// How square the centre block is, see [`Layout::squareness`].
+const SQUARENESS: f64 = 0.70;
 /// Smallest a/R for which a layout is made: that of a sphere ten times as large as the one pressed
 /// against it.
 const SMALLEST_CONTACT: f64 = 0.000_05;
@@ -169,7 +172,7 @@ impl Layout {
             fine_rings,
             depths,
             shell_depth,
-            squareness: 0.70,
+            squareness: SQUARENESS,
             rounding_rings: (m / 2).max(1),
             spread: 1.0,
             shifts: Vec::new(),

@@ -19,7 +19,8 @@ pub use layout::{FINE_ZONES, FINEST_SURFACE, FIRST_LAYERS, LARGEST_CONTACT, LARG
 use skin::Skin;
 pub use spec::SphereSpec;
 
-/// Contact is watched this many fine radii from the pole.
+/// Contact is watched this many fine radii from the pole. Half and twice of what is over 1:
+/// `benches/constants`.
 const CONTACT_MARGIN: f64 = 1.3;
 /// Smallest a/R that a body is meshed for.
 const SMALLEST_CONTACT: f64 = 0.000_5;

@@ -18,7 +18,7 @@ use crate::mesh::hierarchy::{Blocks, Site};
 #[cfg(test)]
 mod tests;
 
-/// Layers of a level's cells that the next one splits.
+/// Layers of a level's cells that the next one splits. Half and twice of it: `benches/constants`.
 const LAYERS: usize = 2;
 /// The local nodes of an element's face on the surface, counter-clockwise seen from outside.
 const OUTER_FACE: [usize; 4] = [0, 3, 2, 1];

@@ -33,7 +33,7 @@ fn entry_ripple(mesh: &Mesh, range: [f64; 2]) -> (f64, f64) {
 fn quality_of(mesh: &Mesh, contact_radius: f64) -> (f64, f64, bool) {
     let (mut fine, mut all, mut positive) = (1f64, 1f64, true);
     for e in 0..mesh.elements.len() {
-        let x = quality::corners(mesh, e);
+        let x = mesh.corners(e);
         let q = quality::scaled_jacobian(&x);
         positive &= quality::smallest_jacobian(&x) > 0.0;
         all = all.min(q);
