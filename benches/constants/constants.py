@@ -3,13 +3,14 @@
 
     python3 benches/constants/constants.py [NAME ...] [--list] [--runs] [--meshes] [--laws] [--depths]
 
-The sources are copied to target/constants, and in the copy the constants are read from variables of their names; so one program,
-built there in a few minutes, has every value of each. The contacts that a constant was tuned on are pressed and sheared on a
-coarse mesh, one thread each. A row has Newton iterations, cut-backs, Krylov iterations, seconds of processor time, and by how much
-F_N and F_T are then off from those of the constant as it is, in per cent of the largest of each; and a0 and k_T0 in per cent.
+The sources are copied to target/constants, and in the copy the constants are read from variables of their names; so one
+program, built there in a few minutes, has every value of each. The contacts that a constant was tuned on are pressed and
+sheared on a coarse mesh, one thread each. A row has Newton iterations, cut-backs, Krylov iterations, seconds of processor time,
+and by how much F_N and F_T are then off from those of the constant as it is, in per cent of the largest of each; and a0 and
+k_T0 in per cent.
 
-The constants of the mesh change what its error is: with them F_N and F_T are held against the limit of a finer mesh, and a row has
-the elements and the scaled Jacobian at the worst corner too.
+The constants of the mesh change what its error is: with them F_N and F_T are held against the limit of a finer mesh, and a row
+has the elements and the scaled Jacobian at the worst corner too.
 
 The constants of a table or a law are not of runs: with them a table is made of the same simulated depths (a composed one of the
 tables of both bodies), follows a path, and is held against the simulation of that path. Those that choose the depths of a table
@@ -34,8 +35,9 @@ CONTACTS = {
     "soft": [f"{YIELD}=40.0", f"{FRICTION}=0.5"],
     "long steps": [f"{YIELD}=40.0", f"{FRICTION}=0.5", "solver.press_steps=4", "solver.shear_steps=3"],
     "deep": [f"{YIELD}=20.0", "solver.press_steps=8"],
-    "unlike, long steps": ["opponent={material={youngs_modulus=600e3, poissons_ratio=0.3, hardening={law=\"ideal\", yield_stress=100.0}}}",
-                           "solver.press_steps=4", "solver.shear_steps=3"],
+    "unlike, long steps": [
+        "opponent={material={youngs_modulus=600e3, poissons_ratio=0.3, hardening={law=\"ideal\", yield_stress=100.0}}}",
+        "solver.press_steps=4", "solver.shear_steps=3"],
     "elastic": ["material.hardening={law=\"elastic\"}"],
     "nu 0.45": [f"{NU}=0.45"],
     "pair": ["opponent.equal=true"],
@@ -57,6 +59,7 @@ CONTACTS = {
     "rolled": ["path=[{indentation=0.02}, {roll=0.3}]"],
     "free, plastic": ["sphere.equator=free", "path=[{indentation=0.05}, {shear=0.02}]"],
 }
+LINALG, CONTACT = "crates/kernels/src/linalg/", "crates/kernels/src/contact/"
 # Of these what they have over 1 is halved and doubled.
 OVER_ONE = {"RING_GROWTH", "LAYER_GROWTH", "CONTACT_MARGIN", "zone.MARGIN", "BLIND_MARGIN", "RATIO", "LENGTH", "build.NEAR"}
 FOOTPRINT = (["src/simulation/footprint.rs"], ["reference", "soft", "elastic"])
@@ -87,8 +90,8 @@ CONSTANTS = {
     "STALLED": (["src/solver/systems/tied.rs"], ["pair", "unlike", "unlike, long steps"]),
     "tied.RESTART": (["src/solver/systems/tied.rs"], ["unlike", "unlike, long steps"]),
     "tied.MAX_ITERATIONS": (["src/solver/systems/tied.rs"], ["unlike", "unlike, long steps"]),
-    "solver.RESTART": (["crates/kernels/src/linalg/solver.rs"], ["soft", "nu 0.45"]),
-    "solver.MAX_ITERATIONS": (["crates/kernels/src/linalg/solver.rs"], ["soft", "nu 0.45"]),
+    "solver.RESTART": ([LINALG + "solver.rs"], ["soft", "nu 0.45"]),
+    "solver.MAX_ITERATIONS": ([LINALG + "solver.rs"], ["soft", "nu 0.45"]),
     "UNIT_RESPONSE": (["src/solver/iterate/linearise.rs", "src/solver/iterate/resident.rs"], ["held"]),
     "UNIT_MOTION": (["src/solver/iterate/stiffness.rs"], ["reference", "soft"]),
     "MOST_SYSTEMS": (["src/solver/iterate/stiffness.rs"], ["reference", "soft"]),
@@ -120,24 +123,24 @@ CONSTANTS = {
     "ROOM": (["src/simulation/scout.rs"], ["scouted"]),
     "SHEAR_GROWTH": (["src/simulation/path.rs", "src/output/path_share.rs"], ["reference", "soft"]),
     "RELEASE_STEPS": (["src/simulation/path.rs", "src/study/shard.rs"], ["released", "released to half"]),
-    "CONTACT_WEIGHT": (["crates/kernels/src/contact/coulomb.rs", "src/compute/cpu.rs", "src/solver/opponent/joint.rs",
+    "CONTACT_WEIGHT": ([CONTACT + "coulomb.rs", "src/compute/cpu.rs", "src/solver/opponent/joint.rs",
                         "src/solver/opponent/rigid.rs"], ["reference", "soft", "pair", "unlike", "rigid sphere"]),
-    "DEGREE": (["crates/kernels/src/linalg/multigrid.rs", "crates/kernels/src/linalg/layout.rs"], ["reference", "soft", "nu 0.45", "unlike"]),
-    "LOW": (["crates/kernels/src/linalg/chebyshev.rs", "crates/kernels/src/linalg/multigrid.rs", "crates/kernels/src/linalg/layout.rs"],
+    "DEGREE": ([LINALG + "multigrid.rs", LINALG + "layout.rs"], ["reference", "soft", "nu 0.45", "unlike"]),
+    "LOW": ([LINALG + "chebyshev.rs", LINALG + "multigrid.rs", LINALG + "layout.rs"],
             ["reference", "soft", "nu 0.45", "unlike"]),
-    "HIGH": (["crates/kernels/src/linalg/chebyshev.rs", "crates/kernels/src/linalg/layout.rs"], ["reference", "soft", "nu 0.45", "unlike"]),
-    "COARSEST_DEGREE": (["crates/kernels/src/linalg/multigrid.rs", "crates/kernels/src/linalg/layout.rs"], ["reference", "soft", "nu 0.45"]),
-    "COARSEST_LOW": (["crates/kernels/src/linalg/multigrid.rs", "crates/kernels/src/linalg/layout.rs"], ["reference", "soft", "nu 0.45"]),
-    "COVERED": (["crates/kernels/src/contact/mortar.rs", "crates/kernels/src/contact/inversion.rs"], ["pair", "pair, turned", "unlike"]),
-    "NARROW": (["crates/kernels/src/contact/mortar.rs"], ["pair", "pair, far"]),
-    "mortar.MARGIN": (["crates/kernels/src/contact/mortar.rs"], ["pair", "pair, far"]),
-    "OWN_IMAGE": (["crates/kernels/src/contact/mortar.rs"], ["pair", "pair, far"]),
-    "SEAM": (["crates/kernels/src/contact/pair.rs"], ["pair", "pair, turned"]),
-    "SEPARATION": (["crates/kernels/src/contact/inversion.rs"], ["pair, turned", "pair, far across"]),
-    "BEYOND": (["crates/kernels/src/contact/inversion.rs"], ["pair, turned", "pair, far across"]),
-    "WITHIN": (["crates/kernels/src/contact/inversion.rs"], ["pair, turned", "pair, far across"]),
-    "TILT": (["crates/kernels/src/contact/inversion.rs"], ["pair, turned", "pair, far across"]),
-    "THIN": (["crates/kernels/src/contact/inversion.rs"], ["pair, turned", "pair, far across"]),
+    "HIGH": ([LINALG + "chebyshev.rs", LINALG + "layout.rs"], ["reference", "soft", "nu 0.45", "unlike"]),
+    "COARSEST_DEGREE": ([LINALG + "multigrid.rs", LINALG + "layout.rs"], ["reference", "soft", "nu 0.45"]),
+    "COARSEST_LOW": ([LINALG + "multigrid.rs", LINALG + "layout.rs"], ["reference", "soft", "nu 0.45"]),
+    "COVERED": ([CONTACT + "mortar.rs", CONTACT + "inversion.rs"], ["pair", "pair, turned", "unlike"]),
+    "NARROW": ([CONTACT + "mortar.rs"], ["pair", "pair, far"]),
+    "mortar.MARGIN": ([CONTACT + "mortar.rs"], ["pair", "pair, far"]),
+    "OWN_IMAGE": ([CONTACT + "mortar.rs"], ["pair", "pair, far"]),
+    "SEAM": ([CONTACT + "pair.rs"], ["pair", "pair, turned"]),
+    "SEPARATION": ([CONTACT + "inversion.rs"], ["pair, turned", "pair, far across"]),
+    "BEYOND": ([CONTACT + "inversion.rs"], ["pair, turned", "pair, far across"]),
+    "WITHIN": ([CONTACT + "inversion.rs"], ["pair, turned", "pair, far across"]),
+    "TILT": ([CONTACT + "inversion.rs"], ["pair, turned", "pair, far across"]),
+    "THIN": ([CONTACT + "inversion.rs"], ["pair, turned", "pair, far across"]),
 }
 # Files, contacts.
 MESH, ONES = "crates/kernels/src/mesh/", ["reference", "elastic"]
@@ -160,7 +163,8 @@ OF_MESHES = {name: ([MESH + file for file in files], ONES) for name, files in {
     "COARSEST_NODES": ["hierarchy.rs"],
 }.items()}
 # What laws are held against: the bodies that are tabulated, the path. One body is the law, two are composed.
-IDEAL, STRONGER = "material.hardening={law=\"ideal\", yield_stress=400.0}", "material.hardening={law=\"ideal\", yield_stress=800.0}"
+SOFT, EARLY, IDEAL, STRONGER, HARD = (
+    "material.hardening={law=\"ideal\", yield_stress=%s}" % stress for stress in ("40.0", "330.0", "400.0", "800.0", "8000.0"))
 POWER = "material.hardening={law=\"power\", yield_stress=100.0, coefficient=300.0, exponent=0.3}"
 SHEARED = "path=[{indentation=0.009}, {shear=0.0025}]"
 BODY = "{youngs_modulus=200e3, poissons_ratio=0.3, hardening={law=\"ideal\", yield_stress=%s}}"
@@ -192,7 +196,6 @@ OF_LAWS = {
     "NO_CREEP": (["src/law/table/series.rs"], ["composed", "weak on a flat", "weak flat"]),
 }
 # The same, with a path of the body that says how deep its table is.
-SOFT, EARLY, HARD = ("material.hardening={law=\"ideal\", yield_stress=%s}" % stress for stress in ("40.0", "330.0", "8000.0"))
 TO_AND_FRO = "path=[{indentation=%s}, {shear=%s}, {shear=%s}]"
 UP_TO = "path=[{indentation=%s}]"
 OF_DEPTHS = {
@@ -224,7 +227,8 @@ type Answer<T> = Result<T, Box<dyn std::error::Error>>;
 
 /// Simulates a case.
 fn simulate(case: &Case, out: &Path) -> Answer<()> {
-    let options = Options { out: Some(out.into()), earlier: Earlier::Replace, threads: std::num::NonZeroUsize::new(1), ..Options::default() };
+    let threads = std::num::NonZeroUsize::new(1);
+    let options = Options { out: Some(out.into()), earlier: Earlier::Replace, threads, ..Options::default() };
     Simulation::with(case, options)?.run()?;
     Ok(())
 }
@@ -353,7 +357,8 @@ def halved_and_doubled(key, kind, value):
 
 
 FINER = (8, 16)
-COARSE = ["mesh.elements_per_contact_radius=4", "mesh.surface_elements_per_contact_radius=8", "output.plots=false", "output.fields=none"]
+COARSE = ["mesh.elements_per_contact_radius=4", "mesh.surface_elements_per_contact_radius=8", "output.plots=false",
+          "output.fields=none"]
 
 
 def called(program, what, out, settings, given=(), dirs=()):
@@ -429,7 +434,9 @@ def off(rows, reference, of=max):
         return rows[-1]
 
     ways = way(rows)
-    pairs = [(row, at(ways, s)) for s, row in zip(way(reference), reference)]
+    # What only turns is at one place; steps that are the same need none between them.
+    same = [row[:3] for row in rows] == [row[:3] for row in reference]
+    pairs = list(zip(reference, rows)) if same else [(row, at(ways, s)) for s, row in zip(way(reference), reference)]
     normal = max(abs(row[3]) for row in reference)
     largest = max(math.hypot(row[4], row[5]) for row in reference)
     # Without a shear F_T is rounding.
@@ -541,7 +548,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", metavar="NAME", help="constants; by default all")
     parser.add_argument("--list", action="store_true", help="the constants, and nothing else")
-    kinds = {"runs": (runs, CONSTANTS), "meshes": (meshes, OF_MESHES), "laws": (laws, OF_LAWS), "depths": (depths, CHOOSING_DEPTHS)}
+    kinds = {"runs": (runs, CONSTANTS), "meshes": (meshes, OF_MESHES), "laws": (laws, OF_LAWS),
+             "depths": (depths, CHOOSING_DEPTHS)}
     for kind in kinds:
         parser.add_argument(f"--{kind}", action="store_true", help=f"those of {kind}; by default all kinds")
     options = parser.parse_args()
