@@ -7,8 +7,8 @@ use asperity::internals::compute::{CaseModel, Compute};
 use asperity::internals::conformance::batch;
 use asperity::internals::conformance::kernels::every_level_has_the_cpus_matrix_and_its_v_cycle;
 use asperity::internals::conformance::linear::{
-    CASES, TestSystem, asked, meets_tolerances_as_the_cpu_does, meets_tolerances_down_to_one_element, mesh, models, solve,
-    solved, system,
+    CASES, TestSystem, asked, meets_tolerances_as_the_cpu_does, meets_tolerances_down_to_one_element,
+    meets_tolerances_on_two_levels, mesh, models, solve, solved, system,
 };
 use asperity::material::Elasticity;
 use rand::{RngExt, SeedableRng};
@@ -46,12 +46,14 @@ fn context(name: &str, precision: Precision) -> Option<Arc<GpuContext>> {
 fn a_device_in_f64_meets_tolerances_as_the_cpu_does() {
     let Some(context) = context("a_device_in_f64_meets_tolerances_as_the_cpu_does", Precision::F64) else { return };
     meets_tolerances_as_the_cpu_does::<f64>(&context, numbers);
+    meets_tolerances_on_two_levels::<f64>(&context, numbers);
 }
 
 #[test]
 fn a_device_in_f32_meets_tolerances_as_the_cpu_does() {
     let Some(context) = context("a_device_in_f32_meets_tolerances_as_the_cpu_does", Precision::F32) else { return };
     meets_tolerances_as_the_cpu_does::<f32>(&context, numbers);
+    meets_tolerances_on_two_levels::<f32>(&context, numbers);
 }
 
 #[test]
