@@ -91,6 +91,11 @@ mod kernels {
     for_a_device!(kernels: a_krylov_cycle_obeys_its_equations);
 }
 
+/// Linear systems of equal pairs.
+mod systems_of_pairs {
+    for_a_device!(pairs: systems_are_the_cpus, systems_of_whole_spheres_are_the_cpus);
+}
+
 /// Newton's iterates against the CPU's.
 mod iterates {
     for_a_device!(iterate: trials_and_corrections_are_the_cpus);

@@ -114,6 +114,7 @@ pub fn models_on(meshes: [Arc<Mesh>; 2]) -> Vec<CaseModel> {
         material: Material { elasticity: Elasticity::new(1.0, [0.3, 0.0, 0.45][i % 3]), hardening: law.unwrap() },
         friction: frictions[i % 4],
         opponent: None,
+        image: None,
         surface: Rigid::default(),
     };
     laws.into_iter().enumerate().map(model).collect()

@@ -45,6 +45,7 @@ fn models(mesh: &Arc<Mesh>) -> Vec<CaseModel> {
         material: Material { elasticity: Elasticity::new(1.0, 0.3), hardening },
         friction,
         opponent: None,
+        image: None,
         surface: Rigid { curvature },
     };
     cases.map(model).to_vec()

@@ -80,6 +80,7 @@ pub fn models(mesh: &Arc<Mesh>) -> Vec<CaseModel> {
         material: Material { elasticity: Elasticity::new(1.0, nu), hardening },
         friction: Friction::Coulomb(0.3),
         opponent: None,
+        image: None,
         surface: Rigid { curvature },
     };
     cases.map(model).to_vec()
@@ -189,7 +190,7 @@ pub fn asked(system: &TestSystem, sides: &[(f64, Vec<f64>)], expected: usize, re
     let TestSystem { displacement, rows, frames, fixed, .. } = system;
     let (rows, frames, fixed) = (rows.clone(), frames.clone(), fixed.clone());
     let sides = sides.iter().map(side).collect();
-    linear::SolveRequest { displacement: displacement.as_slice().into(), rows, frames, fixed, sides }
+    linear::SolveRequest { displacement: displacement.as_slice().into(), rows, frames, fixed, tie: None, sides }
 }
 
 /// The answers to systems of cases.

@@ -15,6 +15,7 @@ pub mod iterate;
 pub mod kernels;
 pub mod linear;
 pub mod material;
+pub mod pairs;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -25,12 +26,13 @@ use crate::compute::gpu::{GpuContext, Precision};
 type TestBody = fn(&Arc<GpuContext>);
 
 /// What takes long on a software driver; other comparisons have the same kernels.
-const LONG: [&str; 5] = [
+const LONG: [&str; 6] = [
     "two bodies",
     "forces and tangents, elements halved twice",
     "states and energies, elements halved twice",
     "forces and tangents: their equations, elements halved twice",
     "linear systems, elements halved twice",
+    "linear systems of pairs of whole spheres",
 ];
 
 /// A comparison of a device with the CPU in one precision.
@@ -131,12 +133,14 @@ pub fn comparisons(has_double: bool) -> Vec<Comparison> {
         "contact rows of what is no number" nan_is_not_swallowed,
     );
     in_both!(all, assembly, batch::OnGpu: "a batch and its cases alone" a_batch_has_the_bits_of_its_cases_alone);
-    let in_double: [(&'static str, TestBody); 5] = [
+    let in_double: [(&'static str, TestBody); 7] = [
         // The solver's kernels are in f32 beside either residual.
         ("linear systems", |context| linear::meets_tolerances_as_the_cpu_does::<f64>(context, linear::own_numbers)),
         ("linear systems, elements halved twice", |context| {
             linear::meets_tolerances_on_two_levels::<f64>(context, linear::own_numbers)
         }),
+        ("linear systems of pairs", pairs::systems_are_the_cpus),
+        ("linear systems of pairs of whole spheres", pairs::systems_of_whole_spheres_are_the_cpus),
         ("linear systems, down to one element", linear::meets_tolerances_down_to_one_element),
         ("Krylov cycles: their equations", kernels::a_krylov_cycle_obeys_its_equations),
         ("trials and corrections of iterates", iterate::trials_and_corrections_are_the_cpus),

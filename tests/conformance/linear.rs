@@ -187,8 +187,14 @@ fn a_hard_system_a_guess_and_what_cannot_be_solved() {
     let n = 3 * flat[0].mesh.nodes.len();
     let (zeros, fixed) = (vec![0.0; n], vec![false; n]);
     let side = Side { rhs: zeros.clone(), tolerance: 0.1, relative_to_guess: false, expected: 1, guess: zeros.clone() };
-    let system =
-        linear::SolveRequest { displacement: zeros.into(), rows: Vec::new(), frames: Vec::new(), fixed, sides: vec![side] };
+    let system = linear::SolveRequest {
+        displacement: zeros.into(),
+        rows: Vec::new(),
+        frames: Vec::new(),
+        fixed,
+        tie: None,
+        sides: vec![side],
+    };
     assert!(!gpu.about().solves && solved(&mut gpu, vec![(0, system)])[0].solutions.is_empty());
 }
 

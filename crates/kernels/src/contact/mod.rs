@@ -11,6 +11,7 @@ pub mod couple;
 pub mod frame;
 pub mod interface;
 pub mod inversion;
+pub mod maps;
 pub mod mortar;
 pub mod pair;
 mod polygon;

@@ -97,10 +97,22 @@ impl RunningSlots {
         level: &StorageBuffer<LevelShape>,
         records: &StorageBuffer<Record>,
     ) -> Result<Self, GpuError> {
+        Self::of(context, groups, |calls| SizedKernel::new(context, &KRYLOV_RUNNING, 1, &args! { level, records, calls }))
+    }
+
+    /// The same where another kernel writes the numbers.
+    ///
+    /// # Errors
+    /// What the device says.
+    pub fn of(
+        context: &GpuContext,
+        groups: impl Iterator<Item = usize>,
+        list: impl FnOnce(&StorageBuffer<u32>) -> Result<SizedKernel, GpuError>,
+    ) -> Result<Self, GpuError> {
         let groups: Vec<usize> = groups.collect::<BTreeSet<_>>().into_iter().collect();
         let numbers: Vec<u32> = groups.iter().flat_map(|&groups| [groups as u32, 0, 1]).collect();
         let calls = context.calls("workgroups of slots that run", &numbers)?;
-        let list = SizedKernel::new(context, &KRYLOV_RUNNING, 1, &args! { level, records, calls })?;
+        let list = list(&calls)?;
         Ok(Self { calls, groups, list })
     }
 
