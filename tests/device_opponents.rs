@@ -1,7 +1,7 @@
 //! An equal pair, a rigid sphere, an unlike sphere that deforms and plates that turn, on a device:
 //! the CPU's history step by step, and the same bits again, alone or in a study; against a rigid
-//! sphere and in the press of an equal pair few bytes an iteration, as over a plane; in its shear no
-//! matrix.
+//! sphere and in the press of an equal pair few bytes an iteration, as over a plane; in its shear
+//! no matrix.
 
 mod device;
 #[path = "common/histories.rs"]

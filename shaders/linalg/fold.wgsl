@@ -24,8 +24,8 @@ fn fold(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         var value = given[first + own];
         if own != opposite {
             // The sign on the other side: - along x of what is even, and elsewhere of what is odd.
-            let sign = select(real(1.0), real(-1.0), (component == 0u) == (parity == 0u));
-            value += sign * given[first + opposite];
+            let there = given[first + opposite];
+            value += select(there, -there, (component == 0u) == (parity == 0u));
         }
         if (is_fixed[half * level.nodes + node] >> component) % 2u == 1u {
             value = 0.0;

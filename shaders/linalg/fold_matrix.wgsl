@@ -1,5 +1,5 @@
 // The finest matrix of half of the body, for what is even in x and for what is odd, which differ in
-// what is fixed alone (see src/linalg/fold.rs): a thread two blocks of a row, whose halves share
+// what is fixed alone (see linalg/fold.rs): a thread two blocks of a row, whose halves share
 // words.
 
 @group(0) @binding(1) var<storage, read> blocks: array<real>;       // [slot][3 i + j][block]

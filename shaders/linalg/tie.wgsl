@@ -1,4 +1,4 @@
-// The maps of an equal pair's interface (see src/contact/maps.rs), as rows of blocks of the contact
+// The maps of an equal pair's interface (see contact/maps.rs), as rows of blocks of the contact
 // nodes, and the vectors that go through them. A slot's words are, for each map, where the row of
 // each contact point begins, and then the blocks: a node, and nine numbers row by row.
 

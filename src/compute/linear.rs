@@ -30,8 +30,8 @@ pub struct SolveRequest {
 /// What ties two equal bodies in a linear system.
 #[derive(Clone, Debug)]
 pub struct PairTie {
-    /// The maps between displacements and the unknowns of the interface: the same for all systems of
-    /// an attempt.
+    /// The maps between displacements and the unknowns of the interface: the same for all systems
+    /// of an attempt.
     pub maps: Arc<PairMaps>,
     /// Which unknowns of half of the body are fixed in what preconditions, of fields that are even
     /// in x and of odd ones.

@@ -34,8 +34,8 @@ impl CaseModel {
         self.mesh.own_elements()
     }
 
-    /// Whether the two have one mesh connectivity and linear systems of one kind: they may be in one
-    /// batch.
+    /// Whether the two have one mesh connectivity and linear systems of one kind: they may be in
+    /// one batch.
     pub fn is_alike(&self, other: &Self) -> bool {
         let (is_equal, own, other) = (self.image == other.image, &self.mesh, &other.mesh);
         is_equal && own.elements == other.elements && own.hanging == other.hanging && own.contact_nodes == other.contact_nodes

@@ -76,8 +76,8 @@ fn distorted_flat(mesh: Mesh, seed: u64) -> Arc<Mesh> {
     Arc::new(mesh)
 }
 
-/// The batches of every test of the element, but for [`two_levels`]: on boxes, where corners hang by
-/// one level, and on both halves of a body, where they hang too.
+/// The batches of every test of the element, but for [`two_levels`]: on boxes, where corners hang
+/// by one level, and on both halves of a body, where they hang too.
 pub fn most_meshes(cells: [usize; 3]) -> [Vec<CaseModel>; 3] {
     [models(cells), models_on([1, 2].map(|seed| with_skin(1, seed))), models_of_whole()]
 }

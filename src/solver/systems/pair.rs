@@ -6,8 +6,8 @@
 //! So the right-hand side is split into its even and its odd part, in x over an image that is
 //! turned half round y, and under a half turn round z over an inverted one. Each goes through a
 //! V-cycle of its own, on half of the body (see [`crate::linalg::fold`] and
-//! [`crate::linalg::turn`]). Up to the first shear all is even. The twin on a device, of a half turn
-//! round y, is `compute::gpu::linear::tied` with `shaders/linalg/{fold,unfold,tie_*}.wgsl`.
+//! [`crate::linalg::turn`]). Up to the first shear all is even. The twin on a device, of a half
+//! turn round y, is `compute::gpu::linear::tied` with `shaders/linalg/{fold,unfold,tie_*}.wgsl`.
 
 use super::half::HalfCycle;
 use super::tied::{InSingle, Tie, Tied, clear};
@@ -169,8 +169,8 @@ impl PairSolver {
         }))
     }
 
-    /// Which unknowns are fixed in what preconditions, of what is even and of what is odd; none over
-    /// an inverted image.
+    /// Which unknowns are fixed in what preconditions, of what is even and of what is odd; none
+    /// over an inverted image.
     pub fn halves(&mut self, interface: &PairInterface, rows: &[Rows<f64>], prescribed: &[bool]) -> Option<[Vec<bool>; 2]> {
         let Cycles::Mirrored(halves) = &mut self.cycles else { return None };
         halves.fix(&self.tie.contact_nodes, interface, rows, prescribed);

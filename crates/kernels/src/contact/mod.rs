@@ -14,6 +14,7 @@ pub mod inversion;
 pub mod maps;
 pub mod mortar;
 pub mod pair;
+mod pair_maps;
 mod polygon;
 pub mod rigid;
 

@@ -67,8 +67,8 @@ pub struct PairInterface {
     /// Per slave: y is not coupled. It is so on the symmetry plane, and on the seam, where there is
     /// no slip along y.
     free_y: Vec<bool>,
-    /// Made when they are asked for.
-    maps: OnceLock<Arc<PairMaps>>,
+    /// Made when they are asked for (see `pair_maps`).
+    pub(super) maps: OnceLock<Arc<PairMaps>>,
 }
 
 /// Slaves that have to do with other slaves or their own image.
@@ -164,11 +164,6 @@ impl PairInterface {
             free_y,
             maps: OnceLock::new(),
         }
-    }
-
-    /// Its maps as a device takes them.
-    pub fn maps(&self) -> Arc<PairMaps> {
-        self.maps.get_or_init(|| Arc::new(PairMaps::new(self))).clone()
     }
 
     /// Nodal loads f with T^T f = `v` at all unknowns that are not `fixed`. Where a slave's unknown

@@ -143,8 +143,8 @@ impl Fold {
         Some(Self { matrix, nodes, place, kind, signs: signs() })
     }
 
-    /// Per block of the folded matrix, the blocks of the whole one (places in its `pattern`) that it
-    /// sums, with a bit for each of their entries that changes its sign.
+    /// Per block of the folded matrix, the blocks of the whole one (places in its `pattern`) that
+    /// it sums, with a bit for each of their entries that changes its sign.
     pub fn sources(&self, pattern: &Pattern) -> Vec<Vec<(u32, u32)>> {
         let mut out = vec![Vec::new(); self.matrix.pattern.entries()];
         for (a, &[own, opposite]) in self.nodes.iter().enumerate() {

@@ -24,3 +24,4 @@ pub mod sizes;
 pub mod solver;
 pub mod sources;
 pub mod tied;
+pub mod tied_plan;

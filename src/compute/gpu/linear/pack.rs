@@ -9,8 +9,8 @@ use crate::contact::frame::AXES;
 /// The systems of a dispatch, slot by slot.
 #[derive(Debug, Default)]
 pub struct Packed {
-    /// Contact rows `[slot][slides, force rows, displacement rows, frame][point]`; of pairs -1 in the
-    /// place of what slides, for slaves that touch.
+    /// Contact rows `[slot][slides, force rows, displacement rows, frame][point]`; of pairs -1 in
+    /// the place of what slides, for slaves that touch.
     pub rows: Vec<f32>,
     /// Fixed components `[slot][node]`, a bit each.
     pub fixed: Vec<u32>,

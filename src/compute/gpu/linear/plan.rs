@@ -4,7 +4,7 @@ use super::super::layout::POINT_ROWS;
 use super::levels::{product_numbers, shared_numbers, slot_numbers};
 use super::records::Record;
 use super::sizes::{CHUNK, RESTART, small_numbers};
-use super::tied::TiedPlan;
+use super::tied_plan::TiedPlan;
 use crate::linalg::layout::{HierarchyLayout, NOWHERE};
 use crate::mesh::Mesh;
 
@@ -24,7 +24,8 @@ pub struct Plan {
 
 impl Plan {
     /// The plan of a mesh; none if it has no hierarchy. `source` says for each block of the pattern
-    /// which block of the upper triangle it is; of pairs whose halves are mirror images `is_paired`.
+    /// which block of the upper triangle it is; `is_paired` says that the cases are equal pairs,
+    /// turned half round y.
     pub fn new(
         mesh: &Mesh,
         pattern: &crate::linalg::Pattern,

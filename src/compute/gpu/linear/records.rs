@@ -3,7 +3,6 @@
 use super::super::buffers::{ReadBack, StorageBuffer};
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
-use super::calls::SizedKernel;
 use super::sizes::RESTART;
 use crate::compute::linear::{Ended, SideReport};
 
@@ -130,30 +129,6 @@ impl Solves {
     /// Some have not finished.
     pub fn go_on(&self) -> bool {
         self.records.iter().any(Record::goes_on)
-    }
-
-    /// Has a profile count what Krylov iterations moved since they were counted last: kernels with
-    /// how many of them a slot has, and those that come after the iterations.
-    pub fn count(&mut self, context: &GpuContext, of_iteration: &[(&SizedKernel, usize)], finish: &[SizedKernel]) {
-        if !context.is_profiled() {
-            return;
-        }
-        let new = self.records.iter().zip(&self.counted).map(|(r, counted)| r.iterations.saturating_sub(*counted));
-        let new: Vec<u32> = new.collect();
-        for i in 0..new.iter().copied().max().unwrap_or(0) {
-            let running = || self.records.iter().zip(&new).filter(|(_, new)| i < **new);
-            // Those that run are all in the same step, which takes one vector more than the last.
-            let vectors = running().map(|(r, new)| (r.steps + i).saturating_sub(*new) + 1).max().unwrap_or(0);
-            for (call, times) in of_iteration {
-                context.credit(call.bound.moved.as_ref(), times * running().count(), vectors as usize);
-            }
-        }
-        for record in &self.records {
-            for call in finish {
-                context.credit(call.bound.moved.as_ref(), 1, record.steps as usize);
-            }
-        }
-        self.counted = self.records.iter().map(|record| record.iterations).collect();
     }
 
     /// How they went.

@@ -6,7 +6,7 @@ use super::super::error::GpuError;
 use super::super::pipelines::KernelList;
 use super::super::pools::Pools;
 use super::arrays::Arrays;
-use super::calls::{SizedKernel, append};
+use super::calls::{SizedKernel, append, count};
 use super::kernels::LinearKernels;
 use super::levels::Levels;
 use super::plan::Plan;
@@ -268,7 +268,7 @@ impl SlotSolver {
     /// those of one list, and the answers after them.
     pub fn count(&self, context: &GpuContext, solves: &mut Solves) {
         let of_iteration = self.levels.cycle.iter().chain(&self.kernels.iteration).chain([&self.kernels.next]);
-        solves.count(context, &of_iteration.map(|call| (call, 1)).collect::<Vec<_>>(), &self.kernels.finish);
+        count(context, solves, &of_iteration.map(|call| (call, 1)).collect::<Vec<_>>(), &self.kernels.finish);
     }
 
     /// The systems of pairs, where a solution is one of those.

@@ -12,107 +12,25 @@ use super::super::kernel::Kernel;
 use super::super::pipelines::KernelList;
 use super::super::pools::Pools;
 use super::arrays::Arrays;
-use super::calls::{RunningSlots, SizedKernel, append};
+use super::calls::{RunningSlots, SizedKernel, append, count};
 use super::kernels::{LinearKernels, VectorKernels};
-use super::levels::{LevelArrays, Levels, product_numbers, shared_numbers, slot_numbers};
+use super::levels::{LevelArrays, Levels};
 use super::records::{Record, Solves};
 use super::sources::{FOLD, FOLD_MATRIX, PLATE_FORCE, TIE_MAP, TIE_MEET, TIE_PRODUCT, TIE_RESIDUAL, TIE_RUNNING, UNFOLD};
+use super::tied_plan::{TIE_BLOCK, TiedPlan};
 use crate::compute::linear::PairTie;
-use crate::contact::interface::Symmetry;
 use crate::contact::maps::{NodeMap, PairMaps};
-use crate::linalg::Pattern;
-use crate::linalg::fold::{Fold, Folding};
-use crate::linalg::layout::{HierarchyLayout, NOWHERE};
-use crate::mesh::Mesh;
 
-/// Maps of an interface, and the number of each (see [`PairMaps::all`]).
-const MAPS: usize = 5;
+/// The number of each map (see [`PairMaps::all`]).
 const HALVES: u32 = 0;
 const NODAL: u32 = 1;
 const CONTRACT: u32 = 2;
 const EXPAND: u32 = 3;
 const REDUCE: u32 = 4;
-/// Numbers of a block of a map with its node.
-pub(in super::super) const TIE_BLOCK: usize = 10;
-/// Blocks of all maps of a slot that there is room for: by contact point, and for the seam, whose
-/// rows are dense. With 27 points across the contact there are up to 41 by point.
-const BLOCKS_OF_POINT: usize = 70;
-const BLOCKS_OF_SEAM: usize = 6000;
 /// As `tie_map.wgsl` has them.
 pub(in super::super) const TIE_CLEARS: u32 = 1;
 pub(in super::super) const TIE_KEEPS_FREE: u32 = 2;
 pub(in super::super) const TIE_OF_ALL: u32 = 4;
-
-/// What the systems of a pair take beside those of one body.
-#[derive(Debug)]
-pub struct TiedPlan {
-    layout: HierarchyLayout,
-    /// By side, k and node of the half: a block of the upper triangle, and the signs that change.
-    sides: Vec<u32>,
-    /// The whole body's nodes of each node of the half.
-    nodes_of: Vec<u32>,
-    /// By node: as `unfold.wgsl` has them.
-    half_of: Vec<u32>,
-    contact_points: usize,
-}
-
-impl TiedPlan {
-    /// That of a mesh; none if it cannot be folded. `source` as in [`super::plan::Plan::new`].
-    pub fn new(mesh: &Mesh, pattern: &Pattern, source: &[u32]) -> Option<Self> {
-        let half = mesh.half.as_ref()?;
-        let fold = Fold::new(pattern, &half.node, &Symmetry::mirror(mesh).nodes)?;
-        let layout = HierarchyLayout::new(&fold.matrix().pattern, &half.hierarchy).ok()?;
-        let (finest, of_blocks) = (&layout.levels[0], fold.sources(pattern));
-        let mut sides = Vec::with_capacity(4 * finest.source.len());
-        for side in 0..2 {
-            for &at in &finest.source {
-                let found = if at == NOWHERE { None } else { of_blocks[at as usize].get(side) };
-                sides.extend(found.map_or([NOWHERE, 0], |&(block, signs)| [source[block as usize], signs]));
-            }
-        }
-        let mut half_of = vec![0; mesh.nodes.len()];
-        for (a, &[own, opposite]) in (0..).zip(fold.nodes()) {
-            half_of[opposite as usize] = 2 * a + 1;
-            half_of[own as usize] = 2 * a;
-        }
-        let nodes_of = fold.nodes().iter().flatten().copied().collect();
-        Some(Self { layout, sides, nodes_of, half_of, contact_points: mesh.contact_nodes.len() })
-    }
-
-    fn words(&self) -> usize {
-        words(self.contact_points)
-    }
-
-    /// Bytes of a slot's A P of the finest level, of both halves.
-    pub fn product_bytes(&self) -> u64 {
-        (2 * product_numbers(&self.layout.levels[0]) * size_of::<f32>()) as u64
-    }
-
-    /// Bytes of a slot: the widest array, and all together.
-    pub fn bytes(&self) -> (u64, u64) {
-        let (mut widest, mut all) = (self.words(), self.words());
-        for (l, level) in self.layout.levels.iter().enumerate() {
-            let (array, sum) = slot_numbers(level);
-            let product = if l == 0 { 0 } else { product_numbers(level) };
-            (widest, all) = (widest.max(2 * array).max(2 * product), all + 2 * (sum + product));
-        }
-        ((widest * size_of::<f32>()) as u64, (all * size_of::<f32>() + 2 * size_of::<Record>()) as u64)
-    }
-
-    /// Bytes of what the slots share.
-    pub fn shared_bytes(&self) -> u64 {
-        let levels: usize = self.layout.levels.iter().map(shared_numbers).sum();
-        ((levels + self.sides.len() + self.nodes_of.len() + self.half_of.len()) * size_of::<u32>()) as u64 + SMALL_ARRAYS
-    }
-}
-
-/// Words of a slot's maps that there is room for.
-fn words(contact_points: usize) -> usize {
-    MAPS * (contact_points + 1) + TIE_BLOCK * (BLOCKS_OF_POINT * contact_points + BLOCKS_OF_SEAM)
-}
-
-/// As `plan` has it.
-const SMALL_ARRAYS: u64 = 8192;
 
 /// What ties the pairs of a dispatch, slot by slot.
 pub type Ties<'a> = [&'a PairTie];
@@ -410,7 +328,7 @@ impl TiedSolver {
     pub fn count(&self, context: &GpuContext, next: &SizedKernel, solves: &mut Solves) {
         let half = self.half.cycle.iter().map(|call| (call, 2));
         let whole = self.before.iter().chain(&self.after).chain([next]).map(|call| (call, 1));
-        solves.count(context, &half.chain(whole).collect::<Vec<_>>(), &self.finish);
+        count(context, solves, &half.chain(whole).collect::<Vec<_>>(), &self.finish);
     }
 }
 
@@ -433,6 +351,7 @@ fn packed(maps: &PairMaps) -> Vec<u32> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tied_plan::words;
     use super::*;
     use crate::contact::pair::{Image, PairInterface};
     use crate::mesh::{SphereSpec, sphere_mesh, whole};
