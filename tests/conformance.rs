@@ -75,6 +75,9 @@ for_every_backend!(element, crate::batch::OnCpu, crate::batch::OnGpu:
     a_state_survives_being_taken_and_restored,
     obeys_its_equations,
     bad_displacements_are_refused,
+    forces_and_tangents_agree_on_two_levels,
+    commits_and_energies_agree_on_two_levels,
+    obeys_its_equations_on_two_levels,
 );
 for_every_backend!(contact, crate::batch::OnCpu, crate::batch::OnGpu: rows_agree, nan_is_not_swallowed);
 
@@ -88,7 +91,12 @@ mod kernels {
     for_a_device!(kernels: a_krylov_cycle_obeys_its_equations);
 }
 
+/// Linear systems of equal pairs.
+mod systems_of_pairs {
+    for_a_device!(pairs: systems_are_the_cpus, systems_of_whole_spheres_are_the_cpus);
+}
+
 /// Newton's iterates against the CPU's.
 mod iterates {
-    for_a_device!(iterate: a_trial_reads_as_on_the_cpu, a_correction_solves_the_hosts_system);
+    for_a_device!(iterate: trials_and_corrections_are_the_cpus);
 }

@@ -1,6 +1,7 @@
 //! An equal pair, a rigid sphere, an unlike sphere that deforms and plates that turn, on a device:
 //! the CPU's history step by step, and the same bits again, alone or in a study; against a rigid
-//! sphere and in the press of an equal pair few bytes an iteration, as over a plane.
+//! sphere and in the press of an equal pair few bytes an iteration, as over a plane; in its shear
+//! no matrix.
 
 mod device;
 #[path = "common/histories.rs"]
@@ -46,6 +47,9 @@ const RELEASED: &str = "[[base.path]]\nrelease = 0.5\n";
 const TURNED: &str =
     "[[base.path]]\nindentation = 0.01\n[[base.path]]\nshear = [0.001, 0.0015]\ntwist = 0.01\nroll = [0.0, 0.002]\n";
 const TURNED_RIGID: &str = "[base.opponent]\nrigid = true\nradius = 2.0\n";
+/// One of an equal pair and its image turned half round y, all of either.
+const TWISTED: &str =
+    "[base.opponent]\nequal = true\n[[base.path]]\nindentation = 0.01\n[[base.path]]\nshear = 0.002\ntwist = 0.01\n";
 const TURNED_EQUAL: &str = "[base.opponent]\nequal = true\n";
 /// One of an equal pair and its image by inversion.
 const INVERTED: &str =
@@ -71,8 +75,10 @@ shear = 0.004
 const VECTORS: &str = "note: the sphere leaves the x axis or turns, so the vectors of Newton's method stay on the host";
 const SYSTEMS: &str = "note: the sphere is pressed against a body that deforms, so the vectors and linear systems of \
                        Newton's method stay on the host";
-const FROM_SHEAR: &str = "note: the sphere is pressed against its equal, so the vectors and linear systems of Newton's method \
-                          stay on the host from the first shear on";
+const FROM_SHEAR: &str = "note: the sphere is pressed against its equal, so the vectors of Newton's method stay on the host \
+                          from the first shear on";
+const TURNED_PAIR: &str = "note: the sphere is pressed against its equal and turns, or its equator is free, so the vectors of \
+                          Newton's method stay on the host, and as long as all is even in x the linear systems too";
 const DIRECT: &str = "note: solver.linear is \"direct\", so the vectors and linear systems of Newton's method stay on the host";
 
 fn program(verb: &str, file: &Path, out: &Path, options: &[&str]) {
@@ -161,6 +167,49 @@ fn a_rigid_sphere_under_a_plate_that_turns_has_the_cpus_history() {
 #[test]
 fn an_equal_pair_that_turns_has_the_cpus_history() {
     check("an_equal_pair_that_turns_has_the_cpus_history", &format!("{TURNED_EQUAL}{TURNED}"), &[SYSTEMS]);
+}
+
+/// The shear's linear systems are solved on the device: the CPU's iterations and its forces, and
+/// what comes down in an iteration are forces and a solution, no matrix.
+#[test]
+fn the_shear_of_an_equal_pair_is_solved_on_the_device() {
+    let test = "the_shear_of_an_equal_pair_is_solved_on_the_device";
+    let Some(_) = device::device(test, Precision::F64) else { return };
+    let dir = tempfile::tempdir().expect("a scratch directory");
+    let at = |name: &str| dir.path().join(name);
+    let base =
+        STUDY.split("[grid]").next().expect("a base").replace("base.", "").replace("[output]", "[output]\nfields = \"none\"");
+    let base = base.replace("tolerance = 1e-9", "tolerance = 1e-9\nerror_estimate = false");
+    let of = |name: &str, end: &str, options: &[&str]| {
+        fs::write(at("case.toml"), format!("{base}[contact]\nfriction = 0.3\n{end}").replace("base.", "")).expect("the case");
+        program("run", &at("case.toml"), &at(name), options);
+        let out = OutputDirectory::existing(at(name));
+        (read_history(&out.history()).expect("a history"), Summary::read(&out.summary()).expect("a summary"))
+    };
+    let end = format!("{EQUAL}hold = \"normal-force\"\n[[base.path]]\nshear = -0.001\n");
+    let [(theirs, _), (ours, all)] = ["cpu", "gpu"].map(|device| of(device, &end, &["--device", device]));
+    let (mixed, _) = of("mixed", &end, &["--device", "gpu", "--precision", "mixed"]);
+    let (_, pressed) = of("pressed", PRESSED_EQUAL, &["--device", "gpu"]);
+    let [difference, in_single] = [&ours, &mixed].map(|rows| difference(rows, &theirs));
+    let iterations = |rows: &[StepRecord]| -> Vec<usize> {
+        rows.iter().filter(|row| row.segment > 0).map(|row| row.newton_iterations).collect()
+    };
+    eprintln!("{difference:.1e} and {in_single:.1e}, iterations {:?} and {:?}", iterations(&ours), iterations(&theirs));
+    assert!(difference <= 2e-6 && in_single <= 2e-6, "{difference} {in_single}");
+    assert_eq!(iterations(&ours), iterations(&theirs));
+    assert_eq!((all.status, all.linear_fallbacks), (RunStatus::Done, 0));
+    let account = |summary: &Summary| summary.device_traffic.expect("an account").steps;
+    let count = (all.newton_iterations - pressed.newton_iterations) as u64;
+    let [down, up] =
+        [account(&all).bytes_down - account(&pressed).bytes_down, account(&all).bytes_up - account(&pressed).bytes_up];
+    eprintln!("{count} iterations of {} unknowns: {} bytes down each, {} up", all.unknowns, down / count, up / count);
+    // Forces in f64 and a solution in f32, of two sides where F_N is held.
+    assert!(down / count <= 30 * all.unknowns as u64, "{}", down / count);
+}
+
+#[test]
+fn an_equal_pair_that_twists_has_the_cpus_history() {
+    check("an_equal_pair_that_twists_has_the_cpus_history", TWISTED, &[TURNED_PAIR]);
 }
 
 /// In the second step of this shear a point that has just ceased to flow has two answers: by the

@@ -18,7 +18,8 @@ use std::sync::Arc;
 fn models() -> Vec<CaseModel> {
     let mesh = Arc::new(brick(2, 2, 2, [1.0; 3]).unwrap());
     let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening: FlowStress::ideal(2e-3).unwrap() };
-    let model = CaseModel { mesh, material, friction: Friction::Coulomb(0.3), opponent: None, surface: Rigid::default() };
+    let model =
+        CaseModel { mesh, material, friction: Friction::Coulomb(0.3), opponent: None, image: None, surface: Rigid::default() };
     vec![model.clone(), model]
 }
 

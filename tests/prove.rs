@@ -52,7 +52,10 @@ fn a_sound_device_is_proved_in_two_files() {
     assert!(report["copies"]["device"].as_f64() > Some(0.0));
     let jobs = &report["jobs"][0];
     let on_device = jobs["jobs"].as_array().unwrap().iter().filter(|job| job["device"] != "CPU (1 thread)").count();
-    assert!(on_device >= 2 && !jobs["kernels"].as_array().unwrap().is_empty(), "{jobs}");
+    assert!(on_device >= 1 && !jobs["kernels"].as_array().unwrap().is_empty(), "{jobs}");
+    // What the quick run leaves out is said, in both files.
+    let left_out: Vec<&str> = report["left_out"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
+    assert!(left_out.len() == 5 && left_out.iter().all(|line| page.contains(line)), "{left_out:?}");
     for part in ["Everything that was compared agrees", "## Limits", "## Nine whole cases", "## Whole jobs at 4 elements"] {
         assert!(page.contains(part), "{part}: {page}");
     }

@@ -108,6 +108,7 @@ pub fn models(mesh: &Mesh, count: usize) -> Result<Vec<CaseModel>, BenchError> {
             material,
             friction: Friction::Coulomb(random.between(0.1, 0.5)),
             opponent: None,
+            image: None,
             surface: Rigid::default(),
         })
     };

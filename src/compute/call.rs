@@ -105,7 +105,8 @@ impl Call {
         use std::mem::discriminant;
         match (self, other) {
             (Self::Iterate(one), Self::Iterate(other)) => discriminant(&one.ask) == discriminant(&other.ask),
-            (Self::Force { .. } | Self::Tangent { .. } | Self::Contact { .. } | Self::Solve(_) | Self::Commit { .. }, _) => {
+            (Self::Solve(one), Self::Solve(other)) => one.tie.is_some() == other.tie.is_some(),
+            (Self::Force { .. } | Self::Tangent { .. } | Self::Contact { .. } | Self::Commit { .. }, _) => {
                 discriminant(self) == discriminant(other)
             }
             _ => false,

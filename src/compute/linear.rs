@@ -5,21 +5,37 @@ use std::sync::Arc;
 use super::Evaluated;
 use crate::contact::coulomb::Rows;
 use crate::contact::frame::ContactFrame;
+use crate::contact::maps::PairMaps;
 
 /// Asks to form the tangent of one case and to solve linear systems with it, without bringing it to
-/// the host. Over a rigid body only, with the unknowns of contact nodes in their frames.
+/// the host. Over a rigid body, with the unknowns of contact nodes in their frames; and of an equal
+/// pair that is turned half round y, with the unknowns of its interface.
 #[derive(Clone, Debug)]
 pub struct SolveRequest {
     /// Trial displacement, three a node.
     pub displacement: Arc<[f64]>,
-    /// Contact conditions; those of points that slide replace the rows of their nodes.
+    /// Contact conditions; those of points that slide replace the rows of their nodes, and those of
+    /// a pair's slaves that touch stand in the place of their forces.
     pub rows: Vec<Rows<f64>>,
     /// Frames of contact nodes; none where all are the axes.
     pub frames: Vec<ContactFrame>,
     /// Per unknown: its row is one of the identity, whatever the tangent holds.
     pub fixed: Vec<bool>,
+    /// What ties the bodies of an equal pair.
+    pub tie: Option<PairTie>,
     /// The systems.
     pub sides: Vec<Side>,
+}
+
+/// What ties two equal bodies in a linear system.
+#[derive(Clone, Debug)]
+pub struct PairTie {
+    /// The maps between displacements and the unknowns of the interface: the same for all systems
+    /// of an attempt.
+    pub maps: Arc<PairMaps>,
+    /// Which unknowns of half of the body are fixed in what preconditions, of fields that are even
+    /// in x and of odd ones.
+    pub halves: [Vec<bool>; 2],
 }
 
 /// One right-hand side.

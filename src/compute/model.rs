@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::coulomb::Friction;
+use crate::contact::pair::Image;
 use crate::contact::rigid::Rigid;
 use crate::material::multistep::Flow;
 use crate::material::{Material, PointState};
@@ -21,6 +22,8 @@ pub struct CaseModel {
     pub friction: Friction<f64>,
     /// Elasticity and hardening of the opponent, if the mesh is of two bodies.
     pub opponent: Option<Material<f64>>,
+    /// Where the other of two equal bodies is; none where the opponent is another one.
+    pub image: Option<Image>,
     /// Surface of an opponent that does not deform: the plane by default.
     pub surface: Rigid,
 }
@@ -31,10 +34,11 @@ impl CaseModel {
         self.mesh.own_elements()
     }
 
-    /// Whether the two have one mesh connectivity: they may be in one batch.
+    /// Whether the two have one mesh connectivity and linear systems of one kind: they may be in
+    /// one batch.
     pub fn is_alike(&self, other: &Self) -> bool {
-        let (own, other) = (&self.mesh, &other.mesh);
-        own.elements == other.elements && own.hanging == other.hanging && own.contact_nodes == other.contact_nodes
+        let (is_equal, own, other) = (self.image == other.image, &self.mesh, &other.mesh);
+        is_equal && own.elements == other.elements && own.hanging == other.hanging && own.contact_nodes == other.contact_nodes
     }
 }
 

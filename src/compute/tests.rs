@@ -42,6 +42,7 @@ fn models() -> Vec<CaseModel> {
             material: material(FlowStress::ideal(2e-3).unwrap()),
             friction: Friction::Coulomb(0.3),
             opponent: None,
+            image: None,
             surface: Rigid::default(),
         },
         CaseModel {
@@ -49,6 +50,7 @@ fn models() -> Vec<CaseModel> {
             material: material(FlowStress::Elastic),
             friction: Friction::Coulomb(0.0),
             opponent: None,
+            image: None,
             surface: Rigid::default(),
         },
         CaseModel {
@@ -56,6 +58,7 @@ fn models() -> Vec<CaseModel> {
             material: material(FlowStress::power(1e-3, 5e-3, 0.3).unwrap()),
             friction: Friction::Stick,
             opponent: None,
+            image: None,
             surface: Rigid::default(),
         },
     ]

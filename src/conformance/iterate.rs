@@ -45,6 +45,7 @@ fn models(mesh: &Arc<Mesh>) -> Vec<CaseModel> {
         material: Material { elasticity: Elasticity::new(1.0, 0.3), hardening },
         friction,
         opponent: None,
+        image: None,
         surface: Rigid { curvature },
     };
     cases.map(model).to_vec()
@@ -150,20 +151,25 @@ fn near(what: &str, ours: f64, theirs: f64, scale: f64) {
     assert!((ours - theirs).abs() <= 1e-9 * scale, "{what}: {ours:e}, not {theirs:e}");
 }
 
-/// The same trials on both: every number by which the iteration goes on. On half a sphere and on
-/// all of it, whose plate moves along x alone here: a device knows no other.
-pub fn a_trial_reads_as_on_the_cpu(context: &Arc<GpuContext>) {
-    [mesh(), whole_mesh()].iter().for_each(|mesh| a_trial_reads_so_on(pressed_on(context, mesh)));
+/// Trials and corrections after one press, on half a sphere and on all of it, whose plate moves
+/// along x alone here: a device knows no other.
+pub fn trials_and_corrections_are_the_cpus(context: &Arc<GpuContext>) {
+    for mesh in [mesh(), whole_mesh()] {
+        let mut pressed = pressed_on(context, &mesh);
+        a_trial_reads_as_on_the_cpu(&mut pressed);
+        a_correction_solves_the_hosts_system(&mut pressed);
+    }
 }
 
-fn a_trial_reads_so_on(mut pressed: Pressed) {
+/// The same trials on both: every number by which the iteration goes on.
+fn a_trial_reads_as_on_the_cpu(pressed: &mut Pressed) {
     for case in 0..pressed.models.len() {
         for held in [None, Some(1e-4)] {
             let (mesh, opponent) = (pressed.models[case].mesh.clone(), opponent(&pressed.models[case]));
             let control = Control { h: DEPTH + 1e-4, pose: Pose::along_x(2e-4), normal_force: held };
             let start = pressed.displacement[case].clone();
             let at_start = reading(&ask(&mut pressed.gpu, &[(case, false, plate(&control), begin(&mesh))])[0]);
-            let (current, boundary) = on_host(&mut pressed, case, &start, control.h, &control);
+            let (current, boundary) = on_host(pressed, case, &start, control.h, &control);
             near("merit", at_start.merit, current.merit, current.merit);
             near("plate force", at_start.plate_force, current.plate_force, current.plate_force);
             let mut fixed = vec![false; start.len()];
@@ -180,7 +186,7 @@ fn a_trial_reads_so_on(mut pressed: Pressed) {
                 if length == 1.0 {
                     boundary.place_plate(&mut u, h, &control.pose);
                 }
-                let (trial, _) = on_host(&mut pressed, case, &u, h, &control);
+                let (trial, _) = on_host(pressed, case, &u, h, &control);
                 near("merit", tried.merit, trial.merit, trial.merit);
                 near("force scale", tried.force_scale, trial.force_scale, trial.force_scale);
                 near("plate force", tried.plate_force, trial.plate_force, trial.force_scale);
@@ -220,18 +226,14 @@ pub fn corrected(answer: &Reply) -> Corrected {
 }
 
 /// A correction solves the system that the host states in f64, to the tolerance that was asked; one
-/// under a held force brings the plate's to it. On half a sphere and on all of it.
-pub fn a_correction_solves_the_hosts_system(context: &Arc<GpuContext>) {
-    [mesh(), whole_mesh()].iter().for_each(|mesh| a_correction_solves_it_on(pressed_on(context, mesh)));
-}
-
-fn a_correction_solves_it_on(mut pressed: Pressed) {
+/// under a held force brings the plate's to it.
+fn a_correction_solves_the_hosts_system(pressed: &mut Pressed) {
     for case in 0..pressed.models.len() {
         let mesh = pressed.models[case].mesh.clone();
         let start = pressed.displacement[case].clone();
         for held in [false, true] {
             let mut control = Control { h: DEPTH, pose: Pose::along_x(1e-4), normal_force: None };
-            let (current, boundary) = on_host(&mut pressed, case, &start, control.h, &control);
+            let (current, boundary) = on_host(pressed, case, &start, control.h, &control);
             let target = 1.1 * current.plate_force;
             control.normal_force = held.then_some(target);
             let begun = reading(&ask(&mut pressed.gpu, &[(case, false, plate(&control), begin(&mesh))])[0]);
@@ -269,7 +271,7 @@ fn a_correction_solves_it_on(mut pressed: Pressed) {
                 opponent(&pressed.models[case]).contract(&current, &mesh, &mut y);
                 assert!(found.unit.is_none() && left(&y) <= 1.02e-4 * left(&nothing), "{} of {}", left(&y), left(&nothing));
             }
-            let (then, _) = on_host(&mut pressed, case, &vectors.displacement, control.h + found.delta_h, &control);
+            let (then, _) = on_host(pressed, case, &vectors.displacement, control.h + found.delta_h, &control);
             near("merit", found.trial.merit, then.merit, then.merit);
         }
     }

@@ -15,6 +15,7 @@ pub mod iterate;
 pub mod kernels;
 pub mod linear;
 pub mod material;
+pub mod pairs;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -25,7 +26,14 @@ use crate::compute::gpu::{GpuContext, Precision};
 type TestBody = fn(&Arc<GpuContext>);
 
 /// What takes long on a software driver; other comparisons have the same kernels.
-const LONG: [&str; 1] = ["two bodies"];
+const LONG: [&str; 6] = [
+    "two bodies",
+    "forces and tangents, elements halved twice",
+    "states and energies, elements halved twice",
+    "forces and tangents: their equations, elements halved twice",
+    "linear systems, elements halved twice",
+    "linear systems of pairs of whole spheres",
+];
 
 /// A comparison of a device with the CPU in one precision.
 #[derive(Clone, Copy)]
@@ -101,7 +109,7 @@ macro_rules! in_both {
 /// The comparisons that a device with these abilities is put to; without double precision those in
 /// f32.
 pub fn comparisons(has_double: bool) -> Vec<Comparison> {
-    let mut all: Vec<Comparison> = Vec::with_capacity(32);
+    let mut all: Vec<Comparison> = Vec::with_capacity(48);
     in_both!(all, material, material::GpuPoints:
         "return mapping" agrees_with_the_reference,
         "return mapping: its equations" obeys_its_equations,
@@ -116,19 +124,26 @@ pub fn comparisons(has_double: bool) -> Vec<Comparison> {
         "a state taken and restored" a_state_survives_being_taken_and_restored,
         "forces and tangents: their equations" obeys_its_equations,
         "displacements that are refused" bad_displacements_are_refused,
+        "forces and tangents, elements halved twice" forces_and_tangents_agree_on_two_levels,
+        "states and energies, elements halved twice" commits_and_energies_agree_on_two_levels,
+        "forces and tangents: their equations, elements halved twice" obeys_its_equations_on_two_levels,
     );
     in_both!(all, contact, batch::OnGpu:
         "contact rows" rows_agree,
         "contact rows of what is no number" nan_is_not_swallowed,
     );
     in_both!(all, assembly, batch::OnGpu: "a batch and its cases alone" a_batch_has_the_bits_of_its_cases_alone);
-    let in_double: [(&'static str, TestBody); 5] = [
+    let in_double: [(&'static str, TestBody); 7] = [
         // The solver's kernels are in f32 beside either residual.
         ("linear systems", |context| linear::meets_tolerances_as_the_cpu_does::<f64>(context, linear::own_numbers)),
+        ("linear systems, elements halved twice", |context| {
+            linear::meets_tolerances_on_two_levels::<f64>(context, linear::own_numbers)
+        }),
+        ("linear systems of pairs", pairs::systems_are_the_cpus),
+        ("linear systems of pairs of whole spheres", pairs::systems_of_whole_spheres_are_the_cpus),
         ("linear systems, down to one element", linear::meets_tolerances_down_to_one_element),
         ("Krylov cycles: their equations", kernels::a_krylov_cycle_obeys_its_equations),
-        ("trials of iterates", iterate::a_trial_reads_as_on_the_cpu),
-        ("corrections of iterates", iterate::a_correction_solves_the_hosts_system),
+        ("trials and corrections of iterates", iterate::trials_and_corrections_are_the_cpus),
     ];
     all.extend(in_double.map(|(name, body)| Comparison { name, precision: Precision::F64, body }));
     all.retain(|comparison| has_double || comparison.precision == Precision::F32);

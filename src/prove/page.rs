@@ -31,6 +31,9 @@ fn write_page(text: &mut String, report: &ProofReport) -> std::fmt::Result {
         report.disagreements.iter().try_for_each(|line| writeln!(text, "- {line}"))?;
         writeln!(text)?;
     }
+    if !report.left_out.is_empty() {
+        writeln!(text, "The quick run leaves something out. {}\n", report.left_out.join(" "))?;
+    }
     if report.software {
         writeln!(text, "A software driver: its times are no measure of any GPU.\n")?;
     }

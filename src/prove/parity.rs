@@ -31,6 +31,8 @@ const BOUNDS: [ParityBounds; 2] =
 const ITERATIONS: f64 = 0.05;
 /// The cases that the quick run computes alone too.
 const ALONE: [usize; 1] = [5];
+/// Steps of a shear in the study, and in the quick run.
+const SHEAR_STEPS: [usize; 2] = [8, 4];
 
 /// A case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -156,9 +158,21 @@ fn options(device: DeviceChoice, precision: PrecisionChoice, threads: usize) -> 
     study::Options { device, precision, threads, shard: None, resume: false, retry: false, force: false }
 }
 
-/// The study, or one case of it, with a tolerance.
-fn text_of(tolerance: f64, only: Option<usize>) -> String {
+/// What is computed of the study.
+#[derive(Clone, Copy, Debug)]
+struct Of {
+    /// The tolerance of Newton's method.
+    tolerance: f64,
+    /// With fewer steps.
+    quick: bool,
+    /// One case alone.
+    only: Option<usize>,
+}
+
+fn text_of(Of { tolerance, quick, only }: Of) -> String {
+    let steps = |of: usize| format!("shear_steps = {}\nerror_estimate", SHEAR_STEPS[of]);
     let text = STUDY.replace("[base.solver]", &format!("[base.solver]\ntolerance = {tolerance:e}"));
+    let text = text.replace(&steps(0), &steps(usize::from(quick)));
     let mut parts = text.split("[[list]]");
     let base = parts.next().unwrap_or_default().to_owned();
     parts
@@ -167,8 +181,8 @@ fn text_of(tolerance: f64, only: Option<usize>) -> String {
         .fold(base, |text, (_, part)| text + "[[list]]" + part)
 }
 
-fn computed(devices: &Devices, how: &study::Options, tolerance: f64, only: Option<usize>) -> Result<Vec<Left>, StudyError> {
-    let study = Study::parse(&text_of(tolerance, only), "parity.toml")?;
+fn computed(devices: &Devices, how: &study::Options, of: Of) -> Result<Vec<Left>, StudyError> {
+    let study = Study::parse(&text_of(of), "parity.toml")?;
     let dir = ScratchFolder::new("parity");
     let watched = (Arc::new(StudyProgress::new(true)), Arc::new(AtomicBool::new(false)));
     run_on(devices, &study, dir.path(), how, watched)?;
@@ -180,6 +194,20 @@ fn computed(devices: &Devices, how: &study::Options, tolerance: f64, only: Optio
         Ok(Left { text, history, newton: Summary::read(&directory.summary())?.newton_iterations })
     };
     study.cases.iter().map(left).collect()
+}
+
+/// What the quick run leaves out.
+pub fn left_out(has_double: bool) -> Vec<String> {
+    let alone = ALONE.map(|case| (case + 1).to_string()).join(", ");
+    let [all, quick] = SHEAR_STEPS;
+    let mut said = vec![
+        format!("The whole cases shear in {quick} steps in place of {all}."),
+        format!("They are not solved to a tolerance of {:e}, and only case {alone} is computed alone.", BOUNDS[1].tolerance),
+    ];
+    if has_double {
+        said.push("Nor are they computed with steps in f32.".to_owned());
+    }
+    said
 }
 
 /// Compares the cases: at the default tolerance, and where there is time tightly, and with steps in
@@ -195,7 +223,7 @@ pub fn compare(options: &Options, has_double: bool, progress: &mut ProveProgress
         progress.begins(&format!("nine cases on the CPU, tolerance {:e}", bounds.tolerance), 2.0);
         let on_cpu = Devices::open(DeviceChoice::Cpu).map_err(StudyError::from).and_then(|devices| {
             let how = self::options(DeviceChoice::Cpu, PrecisionChoice::Auto, options.threads);
-            computed(&devices, &how, bounds.tolerance, None)
+            computed(&devices, &how, Of { tolerance: bounds.tolerance, quick: options.quick, only: None })
         });
         for &(name, precision) in precisions {
             let bound = if name == "f64" { bounds.in_f64 } else { bounds.mixed };
@@ -230,7 +258,7 @@ fn against(
 ) -> Result<Vec<OfCase>, String> {
     // A profile tells which kernels ran.
     let devices = Devices::profiled(how.device).map_err(|error| error.to_string())?;
-    let run = |only: Option<usize>| computed(&devices, how, tolerance, only).map_err(|error| error.to_string());
+    let run = |only: Option<usize>| computed(&devices, how, Of { tolerance, quick, only }).map_err(|error| error.to_string());
     progress.begins(&format!("nine cases on the device, tolerance {tolerance:e}"), 6.0);
     let together = run(None)?;
     let mut cases = Vec::new();
@@ -265,11 +293,14 @@ mod tests {
 
     #[test]
     fn the_study_has_nine_cases_and_each_is_one_alone() {
-        let all = Study::parse(&text_of(1e-3, None), "parity.toml").unwrap();
-        assert_eq!(all.cases.len(), 9);
-        for (number, case) in all.cases.iter().enumerate() {
-            let alone = Study::parse(&text_of(1e-3, Some(number)), "parity.toml").unwrap();
-            assert!(alone.cases.len() == 1 && alone.cases[0].case == case.case, "case {}", number + 1);
+        for (quick, steps) in [(false, 8), (true, 4)] {
+            let of = |only| Study::parse(&text_of(Of { tolerance: 1e-3, quick, only }), "parity.toml").unwrap();
+            let all = of(None);
+            assert!(all.cases.len() == 9 && all.cases[1].case.solver.shear_steps == Some(steps));
+            for (number, case) in all.cases.iter().enumerate() {
+                let alone = of(Some(number));
+                assert!(alone.cases.len() == 1 && alone.cases[0].case == case.case, "case {}", number + 1);
+            }
         }
     }
 

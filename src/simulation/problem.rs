@@ -242,6 +242,7 @@ impl Problem {
                     case::Friction::Stick => Friction::Stick,
                 },
                 opponent,
+                image: case.image(),
                 surface: rigid_surface(case),
             },
             case: scaled,

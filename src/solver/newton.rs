@@ -136,14 +136,20 @@ impl Newton {
     }
 
     /// Why vectors stay on the host whatever a device can do, and with them the linear systems,
-    /// where these are not those of one body over a rigid one; `None` where neither does.
+    /// where backends do not solve those of the opponent; `None` where neither does.
     pub fn stays_on_host(&self) -> Option<&'static str> {
         let host = &self.iterates.host;
-        if host.opponent().is_known(true) && !host.opponent().is_rigid() && self.at_home.is_none() {
-            return Some(
-                "the sphere is pressed against its equal, so the vectors and linear systems of Newton's method stay on the \
-                 host from the first shear on",
-            );
+        if !host.opponent().is_rigid() && host.opponent().has_known_systems() {
+            return Some(match self.at_home {
+                None => {
+                    "the sphere is pressed against its equal, so the vectors of Newton's method stay on the host from the \
+                     first shear on"
+                }
+                Some(_) => {
+                    "the sphere is pressed against its equal and turns, or its equator is free, so the vectors of Newton's \
+                     method stay on the host, and as long as all is even in x the linear systems too"
+                }
+            });
         }
         if !host.opponent().is_rigid() {
             return Some(

@@ -248,14 +248,14 @@ fn serve(
     })
 }
 
-/// The cases of `order` in groups of one mesh connectivity; groups and cases in the order in which
-/// they come. A case that has no mesh is a group of its own.
+/// The cases of `order` in groups that may share a batch (see [`CaseModel::is_alike`]); groups and
+/// cases in the order in which they come. A case that has no mesh is a group of its own.
 fn by_connectivity(simulator: &Simulator<'_>, order: &[usize]) -> Vec<Vec<usize>> {
     let key = |&case: &usize| match simulator.problem(case) {
-        Ok(problem) => connectivity(&problem.model.mesh),
-        Err(_) => (0, case as u64),
+        Ok(problem) => (connectivity(&problem.model.mesh), problem.model.image.map(|image| image as u8)),
+        Err(_) => ((0, case as u64), None),
     };
-    let keys: Vec<(usize, u64)> = order.par_iter().map(key).collect();
+    let keys: Vec<((usize, u64), Option<u8>)> = order.par_iter().map(key).collect();
     let mut groups: Vec<Vec<usize>> = Vec::new();
     let mut group_of = BTreeMap::new();
     for (&case, key) in order.iter().zip(keys) {

@@ -7,8 +7,8 @@ use asperity::internals::compute::{CaseModel, Compute};
 use asperity::internals::conformance::batch;
 use asperity::internals::conformance::kernels::every_level_has_the_cpus_matrix_and_its_v_cycle;
 use asperity::internals::conformance::linear::{
-    CASES, TestSystem, asked, meets_tolerances_as_the_cpu_does, meets_tolerances_down_to_one_element, mesh, models, solve,
-    solved, system,
+    CASES, TestSystem, asked, meets_tolerances_as_the_cpu_does, meets_tolerances_down_to_one_element,
+    meets_tolerances_on_two_levels, mesh, models, solve, solved, system,
 };
 use asperity::material::Elasticity;
 use rand::{RngExt, SeedableRng};
@@ -46,12 +46,14 @@ fn context(name: &str, precision: Precision) -> Option<Arc<GpuContext>> {
 fn a_device_in_f64_meets_tolerances_as_the_cpu_does() {
     let Some(context) = context("a_device_in_f64_meets_tolerances_as_the_cpu_does", Precision::F64) else { return };
     meets_tolerances_as_the_cpu_does::<f64>(&context, numbers);
+    meets_tolerances_on_two_levels::<f64>(&context, numbers);
 }
 
 #[test]
 fn a_device_in_f32_meets_tolerances_as_the_cpu_does() {
     let Some(context) = context("a_device_in_f32_meets_tolerances_as_the_cpu_does", Precision::F32) else { return };
     meets_tolerances_as_the_cpu_does::<f32>(&context, numbers);
+    meets_tolerances_on_two_levels::<f32>(&context, numbers);
 }
 
 #[test]
@@ -185,8 +187,14 @@ fn a_hard_system_a_guess_and_what_cannot_be_solved() {
     let n = 3 * flat[0].mesh.nodes.len();
     let (zeros, fixed) = (vec![0.0; n], vec![false; n]);
     let side = Side { rhs: zeros.clone(), tolerance: 0.1, relative_to_guess: false, expected: 1, guess: zeros.clone() };
-    let system =
-        linear::SolveRequest { displacement: zeros.into(), rows: Vec::new(), frames: Vec::new(), fixed, sides: vec![side] };
+    let system = linear::SolveRequest {
+        displacement: zeros.into(),
+        rows: Vec::new(),
+        frames: Vec::new(),
+        fixed,
+        tie: None,
+        sides: vec![side],
+    };
     assert!(!gpu.about().solves && solved(&mut gpu, vec![(0, system)])[0].solutions.is_empty());
 }
 

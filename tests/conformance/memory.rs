@@ -51,6 +51,7 @@ fn memory(name: &str, mesh: &Mesh) -> Option<[u64; 2]> {
             material: Material { elasticity: Elasticity::new(1.0, 0.3), hardening: FlowStress::ideal(2e-3).unwrap() },
             friction: Friction::Coulomb(0.3),
             opponent: None,
+            image: None,
             surface: Rigid::default(),
         };
         let models = (0..cases).map(|_| model()).collect();

@@ -10,6 +10,8 @@ use super::kernels::KERNELS;
 use super::layout;
 use super::linear::records::{CONVERGED, FULL, NOT_FINITE, RUNNING, Record};
 use super::linear::sizes::{CHUNK, LevelShape, MOST_STEPS, NODES_IN_GROUP, ROWS_IN_GROUP, SMALL_NODES, THREADS, small_numbers};
+use super::linear::tied::{TIE_CLEARS, TIE_KEEPS_FREE, TIE_OF_ALL};
+use super::linear::tied_plan::TIE_BLOCK;
 use super::resident::{FULL_STICK, HANGS_AT, HAS_HANGING, OCTANT_AT, SOME_HANG};
 use super::source::Precision;
 use super::validate::validate;
@@ -72,6 +74,7 @@ fn of_host() -> BTreeMap<&'static str, u32> {
         ("THREADS", THREADS),
         ("NODES_IN_GROUP", NODES_IN_GROUP),
         ("ROWS_IN_GROUP", ROWS_IN_GROUP),
+        ("TIE_BLOCK", TIE_BLOCK),
         ("RECORD", size_of::<Record>() / WORD),
         ("ALONG", offset_of!(Record, along) / WORD),
         ("NUMBERS", NUMBERS),
@@ -94,6 +97,9 @@ fn of_host() -> BTreeMap<&'static str, u32> {
         ("CONVERGED", CONVERGED),
         ("FULL", FULL),
         ("NOT_FINITE", NOT_FINITE),
+        ("TIE_CLEARS", TIE_CLEARS),
+        ("TIE_KEEPS_FREE", TIE_KEEPS_FREE),
+        ("TIE_OF_ALL", TIE_OF_ALL),
         ("SOME_HANG", SOME_HANG),
         ("OCTANT_AT", OCTANT_AT),
         ("HANGS_AT", HANGS_AT),

@@ -19,7 +19,7 @@ use crate::compute::call::not_asked;
 use crate::compute::cpu::Cpu;
 use crate::compute::handle::{at, at_contact};
 use crate::compute::iterate::Keeps;
-use crate::compute::linear::{SolveRequest, Solved};
+use crate::compute::linear::{PairTie, SolveRequest, Solved};
 use crate::compute::{
     About, Answer, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Evaluated, TangentBlocks,
 };
@@ -226,7 +226,9 @@ impl<R: DeviceReal> Gpu<R> {
         let system = |&i: &usize| if let (_, Call::Solve(system)) = &calls[i] { Some(&**system) } else { None };
         let systems: Vec<&SolveRequest> = dispatch.requests.iter().filter_map(system).collect();
         let packed = Packed::new(&systems);
-        let (outcomes, answers) = self.batch()?.linear(dispatch, &increments, &packed.rows, &packed.fixed, &packed.sides)?;
+        let ties: Vec<&PairTie> = systems.iter().filter_map(|system| system.tie.as_ref()).collect();
+        let of_rows = (&packed.rows[..], &packed.fixed[..]);
+        let (outcomes, answers) = self.batch()?.linear(dispatch, &increments, of_rows, &ties, &packed.sides)?;
         let of_slots = systems.iter().zip(outcomes).enumerate();
         Ok(of_slots
             .map(|(slot, (system, outcome))| Answer::Solved(Solved { outcome, solutions: packed.unpack(slot, &answers, system) }))

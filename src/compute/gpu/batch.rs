@@ -16,6 +16,7 @@ use super::iterate::kernels::Iterates;
 use super::layout::{HISTORY, NEXT_HISTORY, ROWS, STATE};
 use super::linear::plan::Plan;
 use super::linear::solver::{Right, SideSolutions, SlotSolver};
+use super::linear::tied::Ties;
 use super::pipelines::KernelList;
 use super::resident::{BatchSizes, Connectivity, Resident};
 use super::room::DeviceRoom;
@@ -24,6 +25,7 @@ use super::source::Precision;
 use super::tangents::Tangents;
 use crate::compute::gather::GatherPlan;
 use crate::compute::{CaseModel, ComputeError, Evaluated};
+use crate::contact::pair::Image;
 
 /// The arrays and kernels of a batch.
 #[derive(Debug)]
@@ -86,7 +88,8 @@ impl<R: DeviceReal> Batch<R> {
         let mesh = models[0].mesh.clone();
         let gather = GatherPlan::new(&mesh);
         let plan = BlockPlan::new(&mesh, &gather);
-        let linear_plan = Plan::new(&mesh, &gather.pattern, &plan.source, plan.blocks());
+        let is_paired = models[0].image == Some(Image::HalfTurn);
+        let linear_plan = Plan::new(&mesh, &gather.pattern, (&plan.source, plan.blocks()), is_paired);
         let connectivity = Connectivity::new(&context, &mesh, &plan)?;
         let sizes = connectivity.sizes;
         let chunks = context.chunks_of_bindings("the states of a case", models.len(), sizes.resident_bytes::<R>().0)?;
@@ -293,7 +296,8 @@ impl<R: DeviceReal> Batch<R> {
     }
 
     /// The tangents at increments, and the solutions of the systems of each side with them (see
-    /// [`SlotSolver::update`] and [`SlotSolver::solve`]), in one submission a side.
+    /// [`SlotSolver::update`] and [`SlotSolver::solve`]), in one submission a side. What ties pairs
+    /// is in `ties`: none of one body. Without solutions pairs are not solved here.
     ///
     /// # Errors
     /// The device's fault.
@@ -301,8 +305,8 @@ impl<R: DeviceReal> Batch<R> {
         &self,
         dispatch: &Dispatch,
         increments: &[R],
-        rows: &[f32],
-        fixed: &[u32],
+        (rows, fixed): (&[f32], &[u32]),
+        ties: &Ties<'_>,
         sides: &[Right],
     ) -> Result<(Vec<Evaluated>, Vec<SideSolutions>), GpuError> {
         let (context, slots) = (&self.context, dispatch.cases.len());
@@ -311,12 +315,16 @@ impl<R: DeviceReal> Batch<R> {
         self.begin_element(dispatch, increments)?;
         let mut list = context.record();
         self.append(dispatch, Evaluation::Tangent, &mut list)?;
-        linear.update(context, &mut list, rows, fixed, slots)?;
         let mut first = vec![u32::MAX; slots];
+        if ties.is_empty() {
+            linear.update(context, &mut list, rows, fixed, slots)?;
+        } else if !linear.update_tied(context, &mut list, (rows, fixed), ties)? {
+            return Ok((outcomes(&first), Vec::new()));
+        }
         let mut answers = Vec::with_capacity(sides.len());
         for right in sides {
             let list = std::mem::replace(&mut list, context.record());
-            answers.push(linear.solve(context, list, right, (&self.scratch.first_invalid, &mut first))?);
+            answers.push(linear.solve(context, list, right, !ties.is_empty(), (&self.scratch.first_invalid, &mut first))?);
         }
         Ok((outcomes(&first), answers))
     }

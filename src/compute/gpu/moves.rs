@@ -78,6 +78,7 @@ const UNKNOWN: &[&str] = &[
     "krylov_running",
     "krylov_least_squares",
     "plate_force",
+    "tie_running",
     "iterate_read",
     "iterate_depth",
     "iterate_land",

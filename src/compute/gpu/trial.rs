@@ -154,6 +154,7 @@ fn model() -> Result<CaseModel, ComputeError> {
         },
         friction: Friction::Coulomb(0.3),
         opponent: None,
+        image: None,
         surface: Rigid::default(),
     })
 }

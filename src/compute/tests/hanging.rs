@@ -14,7 +14,14 @@ fn with_skin() -> Arc<Mesh> {
 
 fn of(mesh: &Arc<Mesh>, hardening: FlowStress<f64>) -> CaseModel {
     let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening };
-    CaseModel { mesh: mesh.clone(), material, friction: Friction::Coulomb(0.3), opponent: None, surface: Rigid::default() }
+    CaseModel {
+        mesh: mesh.clone(),
+        material,
+        friction: Friction::Coulomb(0.3),
+        opponent: None,
+        image: None,
+        surface: Rigid::default(),
+    }
 }
 
 fn forces(backend: &mut dyn Compute, u: &[f64]) -> Vec<f64> {

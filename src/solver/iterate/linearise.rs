@@ -71,9 +71,16 @@ impl HostIterate {
     fn solve_there(&mut self, case: &mut CaseHandle<'_>, asked: Asked<'_>, times: &mut PhaseTimes) -> Result<There, Halt> {
         let Asked { control, eta, first } = asked;
         let mesh = &case.model().mesh.clone();
-        if !self.is_rigid_by_multigrid() || !case.backend.about().solves {
+        if !case.backend.about().solves {
             return Ok(There::NotSolved { krylov: 0 });
         }
+        let tie = match self.is_rigid_by_multigrid() {
+            true => None,
+            false => match self.opponent.tied(&mut self.linear, &self.current, &self.boundary) {
+                Some(tie) => Some(tie),
+                None => return Ok(There::NotSolved { krylov: 0 }),
+            },
+        };
         let mut lap = Lap::start();
         if first {
             self.expected = [EXPECTED; 2];
@@ -103,7 +110,7 @@ impl HostIterate {
         }
         let Trial { u, rows, frames, .. } = &self.current;
         let (rows, frames) = (rows.clone(), frames.clone());
-        let system = SolveRequest { displacement: u.as_slice().into(), rows, frames, fixed: self.fixed.clone(), sides };
+        let system = SolveRequest { displacement: u.as_slice().into(), rows, frames, fixed: self.fixed.clone(), tie, sides };
         let Solved { outcome, solutions } = case.solve(system)?;
         if solutions.is_empty() {
             return Ok(There::NotSolved { krylov: 0 });

@@ -12,6 +12,7 @@ use super::dissipation::dissipated;
 use super::{Opponent, StepTaken, needed};
 use crate::compute::ComputeError;
 use crate::compute::handle::CaseHandle;
+use crate::compute::linear::PairTie;
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, Status, contact_rows};
 use crate::contact::interface::{Interface, Symmetry};
 use crate::linalg::{LinalgError, SolverKind};
@@ -71,6 +72,23 @@ pub trait Bodies: Debug + Send + Sync {
     /// # Errors
     /// As [`Opponent::systems`].
     fn plan(&self, mesh: &Mesh, pattern: &Pattern, symmetry: &Symmetry) -> Result<Option<Systems>, LinalgError>;
+
+    /// See [`Opponent::tied`].
+    fn tied(
+        &self,
+        systems: &mut Systems,
+        interface: &Self::Interface,
+        rows: &[Rows<f64>],
+        prescribed: &[bool],
+    ) -> Option<PairTie> {
+        let _ = (systems, interface, rows, prescribed);
+        None
+    }
+
+    /// See [`Opponent::has_known_systems`].
+    fn has_known_systems(&self) -> bool {
+        false
+    }
 
     /// Their solver, if these are their systems.
     fn solver(systems: &mut Systems) -> Option<&mut Self::Solver>;
@@ -185,6 +203,18 @@ impl<B: Bodies> Opponent for Joint<B> {
         let solver = B::solver(systems).ok_or_else(of_another_opponent)?;
         solver.tie_mut().take(&self.interface, &trial.rows, fixed, self.is_even());
         Ok(solver.refresh(&boundary.prescribed)?)
+    }
+
+    /// Where all is even the host leaves out what rounding adds, and no device does.
+    fn tied(&self, systems: &mut Systems, trial: &Trial, boundary: &Boundary) -> Option<PairTie> {
+        if self.is_even() {
+            return None;
+        }
+        self.bodies.tied(systems, &self.interface, &trial.rows, &boundary.prescribed)
+    }
+
+    fn has_known_systems(&self) -> bool {
+        self.bodies.has_known_systems()
     }
 
     fn contacts(&self, mesh: &Mesh) -> Range<usize> {

@@ -20,6 +20,7 @@ use super::systems::{OneBody, Systems};
 use super::trial::Trial;
 use crate::compute::ComputeError;
 use crate::compute::handle::CaseHandle;
+use crate::compute::linear::PairTie;
 use crate::contact::coulomb::{Friction, Rows, Status};
 use crate::linalg::{LinalgError, SolverKind};
 use crate::mesh::Mesh;
@@ -63,6 +64,18 @@ pub trait Opponent: Debug + Send + Sync {
     fn refresh(&self, systems: &mut Systems, trial: &Trial, boundary: &Boundary, fixed: &[bool]) -> Result<(), Halt> {
         let _ = (trial, boundary);
         systems.refresh(fixed)
+    }
+
+    /// What ties the bodies in the systems at `trial`, for a backend that solves those of an equal
+    /// pair; none where the host has to.
+    fn tied(&self, systems: &mut Systems, trial: &Trial, boundary: &Boundary) -> Option<PairTie> {
+        let _ = (systems, trial, boundary);
+        None
+    }
+
+    /// Whether backends solve its linear systems in steps that are not even in x.
+    fn has_known_systems(&self) -> bool {
+        self.is_rigid()
     }
 
     /// Whether it is rigid: the backend then states the conditions of contact, and a device may

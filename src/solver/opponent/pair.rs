@@ -2,6 +2,8 @@
 //! simulated, whose surface has slaves and masters.
 
 use super::joint::{Bodies, SpringsInSeries};
+use crate::compute::linear::PairTie;
+use crate::contact::coulomb::Rows;
 use crate::contact::interface::Symmetry;
 use crate::contact::pair::{Image, PairInterface};
 use crate::linalg::LinalgError;
@@ -62,6 +64,16 @@ impl Bodies for EqualPair {
 
     fn plan(&self, mesh: &Mesh, pattern: &Pattern, symmetry: &Symmetry) -> Result<Option<Systems>, LinalgError> {
         Ok(PairSolver::new(mesh, pattern, symmetry, self.image)?.map(|solver| Systems::Pair(Box::new(solver))))
+    }
+
+    fn tied(&self, systems: &mut Systems, interface: &PairInterface, rows: &[Rows<f64>], prescribed: &[bool]) -> Option<PairTie> {
+        let halves = Self::solver(systems)?.halves(interface, rows, prescribed)?;
+        Some(PairTie { maps: interface.maps(), halves })
+    }
+
+    /// By the mirror's halves, which an inverted image has not.
+    fn has_known_systems(&self) -> bool {
+        self.image == Image::HalfTurn
     }
 
     fn solver(systems: &mut Systems) -> Option<&mut PairSolver> {

@@ -22,6 +22,11 @@ impl HalfCycle {
         Self { parity, hierarchy, fixed: vec![false; n], load: vec![0.0; n], z: vec![0.0; n] }
     }
 
+    /// See [`super::pair::PairSolver::with_rounded_smoothers`].
+    pub fn round_smoothers(&mut self) {
+        self.hierarchy = self.hierarchy.clone().with_rounded_smoothers();
+    }
+
     /// Fixes what the whole body has `fixed` on both sides, and what the parity has none of where
     /// they meet. What is fixed on one side alone has to be free for the other.
     pub fn fix(&mut self, fold: &impl Folding, fixed: &[bool]) {

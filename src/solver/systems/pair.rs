@@ -6,11 +6,12 @@
 //! So the right-hand side is split into its even and its odd part, in x over an image that is
 //! turned half round y, and under a half turn round z over an inverted one. Each goes through a
 //! V-cycle of its own, on half of the body (see [`crate::linalg::fold`] and
-//! [`crate::linalg::turn`]). Up to the first shear all is even.
+//! [`crate::linalg::turn`]). Up to the first shear all is even. The twin on a device, of a half
+//! turn round y, is `compute::gpu::linear::tied` with `shaders/linalg/{fold,unfold,tie_*}.wgsl`.
 
 use super::half::HalfCycle;
 use super::tied::{InSingle, Tie, Tied, clear};
-use crate::contact::coulomb::Status;
+use crate::contact::coulomb::{Rows, Status};
 use crate::contact::interface::{Interface, Symmetry};
 use crate::contact::pair::{Image, PairInterface};
 use crate::linalg::fgmres::System;
@@ -63,9 +64,10 @@ impl Halves<Fold> {
         }))
     }
 
-    fn refresh(&mut self, tie: &Tie<PairInterface>, prescribed: &[bool]) -> Result<(), LinalgError> {
-        let Tie { interface, rows, contact_nodes, .. } = tie;
-        self.take(tie, prescribed);
+    /// What is fixed in either half: what is so whatever the contact does, points that touch along
+    /// the normal in what is even, and those that stick along the plane in what is odd.
+    fn fix(&mut self, contact_nodes: &[u32], interface: &PairInterface, rows: &[Rows<f64>], prescribed: &[bool]) {
+        self.fix_prescribed(prescribed);
         for (a, nodes) in self.fold.nodes().iter().enumerate() {
             for contact in nodes.map(|node| contact_nodes.binary_search(&node).ok()).into_iter().flatten() {
                 let Some(k) = interface.slave_of[contact] else { continue };
@@ -81,6 +83,11 @@ impl Halves<Fold> {
                 }
             }
         }
+    }
+
+    fn refresh(&mut self, tie: &Tie<PairInterface>, prescribed: &[bool]) -> Result<(), LinalgError> {
+        self.fold.update(&tie.matrix);
+        self.fix(&tie.contact_nodes, &tie.interface, &tie.rows, prescribed);
         self.update(tie)
     }
 }
@@ -99,7 +106,8 @@ impl Halves<Turn> {
     /// Points that touch are held along the normal in what is even, and those that stick along the
     /// plane in what is odd.
     fn refresh(&mut self, tie: &Tie<PairInterface>, prescribed: &[bool]) -> Result<(), LinalgError> {
-        self.take(tie, prescribed);
+        self.fold.update(&tie.matrix);
+        self.fix_prescribed(prescribed);
         let status = |node: u32| {
             let contact = tie.contact_nodes.binary_search(&node).ok()?;
             Some(tie.rows[tie.interface.slaves[tie.interface.facing()[contact]?]].status)
@@ -117,9 +125,8 @@ impl Halves<Turn> {
 }
 
 impl<F: Folding> Halves<F> {
-    /// Takes over the matrix, and what is fixed whatever the contact does.
-    fn take(&mut self, tie: &Tie<PairInterface>, prescribed: &[bool]) {
-        self.fold.update(&tie.matrix);
+    /// Fixes what is so whatever the contact does.
+    fn fix_prescribed(&mut self, prescribed: &[bool]) {
         self.even.fix(&self.fold, prescribed);
         self.odd.fix(&self.fold, prescribed);
     }
@@ -160,6 +167,24 @@ impl PairSolver {
             cycles,
             work: Work { u: vec![0.0; n], f: vec![0.0; n], single: InSingle::default() },
         }))
+    }
+
+    /// Which unknowns are fixed in what preconditions, of what is even and of what is odd; none
+    /// over an inverted image.
+    pub fn halves(&mut self, interface: &PairInterface, rows: &[Rows<f64>], prescribed: &[bool]) -> Option<[Vec<bool>; 2]> {
+        let Cycles::Mirrored(halves) = &mut self.cycles else { return None };
+        halves.fix(&self.tie.contact_nodes, interface, rows, prescribed);
+        Some([halves.even.fixed.clone(), halves.odd.fixed.clone()])
+    }
+
+    /// Has its V-cycles smooth with a matrix that is rounded as on a device.
+    #[must_use]
+    pub fn with_rounded_smoothers(mut self) -> Self {
+        if let Cycles::Mirrored(halves) = &mut self.cycles {
+            halves.even.round_smoothers();
+            halves.odd.round_smoothers();
+        }
+        self
     }
 }
 

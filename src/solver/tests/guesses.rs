@@ -91,7 +91,14 @@ fn model(friction: Friction<f64>) -> CaseModel {
     let spec =
         SphereSpec { contact_radius: 0.08, elements_per_contact_radius: 3, fine_zone: 1.3, skin_levels: 0, first_layer: 1.0 };
     let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening: FlowStress::ideal(2e-3).unwrap() };
-    CaseModel { mesh: Arc::new(sphere_mesh(&spec).unwrap()), material, friction, opponent: None, surface: Rigid::default() }
+    CaseModel {
+        mesh: Arc::new(sphere_mesh(&spec).unwrap()),
+        material,
+        friction,
+        opponent: None,
+        image: None,
+        surface: Rigid::default(),
+    }
 }
 
 fn newton(mesh: &Mesh) -> Newton {

@@ -52,9 +52,15 @@ impl Rig {
         let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
         let linear = LinearSolver::<f64>::new(SolverKind::Direct, &pattern, &mesh.hierarchy).unwrap();
         let newton = Newton::new(&mesh, linear, settings);
-        let backend =
-            Cpu::new(vec![CaseModel { mesh: mesh.clone(), material, friction, opponent: None, surface: Rigid::default() }])
-                .unwrap();
+        let backend = Cpu::new(vec![CaseModel {
+            mesh: mesh.clone(),
+            material,
+            friction,
+            opponent: None,
+            image: None,
+            surface: Rigid::default(),
+        }])
+        .unwrap();
         Self { backend, newton, u: vec![0.0; 3 * mesh.nodes.len()], mesh, h: 0.0, energies: Energies::default() }
     }
 

@@ -11,8 +11,10 @@ pub mod couple;
 pub mod frame;
 pub mod interface;
 pub mod inversion;
+pub mod maps;
 pub mod mortar;
 pub mod pair;
+mod pair_maps;
 mod polygon;
 pub mod rigid;
 

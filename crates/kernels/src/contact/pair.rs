@@ -13,8 +13,10 @@
 use super::frame::{ContactFrame, frame, from_frame, to_frame};
 use super::interface::{Interface, inward_normals};
 use super::inversion::inverted_image_weights;
+use super::maps::PairMaps;
 use super::mortar::{GapWeights, self_image_weights};
 use crate::mesh::Mesh;
+use std::sync::{Arc, OnceLock};
 
 /// Where the other of two equal bodies is: at R x, for every point x of the one that is meshed.
 ///
@@ -45,7 +47,7 @@ impl Image {
 #[derive(Clone, Debug, Default)]
 pub struct PairInterface {
     /// Where the other body is.
-    image: Image,
+    pub(super) image: Image,
     /// Slave nodes, by their index among the contact nodes.
     pub slaves: Vec<usize>,
     /// Per contact node: the slave that it is, if it is one.
@@ -55,27 +57,29 @@ pub struct PairInterface {
     /// Per contact node: the slave that it has most to do with.
     pub facing: Vec<Option<usize>>,
     /// Nodes of the contact nodes.
-    nodes: Vec<usize>,
+    pub(super) nodes: Vec<usize>,
     /// Per slave: coefficients of master nodes (indices among the contact nodes), by component.
-    masters: Vec<Vec<(usize, [f64; 3])>>,
+    pub(super) masters: Vec<Vec<(usize, [f64; 3])>>,
     /// Per slave: the share of each master's load that is its own; the shares of a master add up to
     /// one.
-    shares: Vec<Vec<(usize, f64)>>,
-    seam: Seam,
+    pub(super) shares: Vec<Vec<(usize, f64)>>,
+    pub(super) seam: Seam,
     /// Per slave: y is not coupled. It is so on the symmetry plane, and on the seam, where there is
     /// no slip along y.
     free_y: Vec<bool>,
+    /// Made when they are asked for (see `pair_maps`).
+    pub(super) maps: OnceLock<Arc<PairMaps>>,
 }
 
 /// Slaves that have to do with other slaves or their own image.
 #[derive(Clone, Debug, Default)]
-struct Seam {
-    slaves: Vec<usize>,
+pub(super) struct Seam {
+    pub(super) slaves: Vec<usize>,
     /// Their matrices by component, row after row: E, and its inverse.
-    direct: [Vec<f64>; 3],
-    inverse: [Vec<f64>; 3],
+    pub(super) direct: [Vec<f64>; 3],
+    pub(super) inverse: [Vec<f64>; 3],
     /// Per slave of the interface: its position in `slaves`.
-    position: Vec<Option<usize>>,
+    pub(super) position: Vec<Option<usize>>,
 }
 
 impl Seam {
@@ -158,6 +162,7 @@ impl PairInterface {
             masters,
             seam,
             free_y,
+            maps: OnceLock::new(),
         }
     }
 

@@ -142,6 +142,22 @@ impl Fold {
         }
         Some(Self { matrix, nodes, place, kind, signs: signs() })
     }
+
+    /// Per block of the folded matrix, the blocks of the whole one (places in its `pattern`) that
+    /// it sums, with a bit for each of their entries that changes its sign.
+    pub fn sources(&self, pattern: &Pattern) -> Vec<Vec<(u32, u32)>> {
+        let mut out = vec![Vec::new(); self.matrix.pattern.entries()];
+        for (a, &[own, opposite]) in self.nodes.iter().enumerate() {
+            let first = self.matrix.pattern.row(a).start;
+            let sides = if own == opposite { 1 } else { 2 };
+            for at in [own, opposite].into_iter().take(sides).flat_map(|node| pattern.row(node as usize)) {
+                let signs = &self.signs[self.kind[at] as usize];
+                let bits = (0..9).filter(|&m| signs[m] < 0.0).fold(0, |bits, m| bits | 1 << m);
+                out[first + self.place[at] as usize].push((at as u32, bits));
+            }
+        }
+        out
+    }
 }
 
 impl Folding for Fold {

@@ -9,7 +9,7 @@ use super::super::error::GpuError;
 use super::super::kernel::Kernel;
 use super::super::pipelines::{Bound, KernelList};
 use super::super::source::Precision;
-use super::records::Record;
+use super::records::{Record, Solves};
 use super::sizes::LevelShape;
 use super::sources::KRYLOV_RUNNING;
 
@@ -97,10 +97,22 @@ impl RunningSlots {
         level: &StorageBuffer<LevelShape>,
         records: &StorageBuffer<Record>,
     ) -> Result<Self, GpuError> {
+        Self::of(context, groups, |calls| SizedKernel::new(context, &KRYLOV_RUNNING, 1, &args! { level, records, calls }))
+    }
+
+    /// The same where another kernel writes the numbers.
+    ///
+    /// # Errors
+    /// What the device says.
+    pub fn of(
+        context: &GpuContext,
+        groups: impl Iterator<Item = usize>,
+        list: impl FnOnce(&StorageBuffer<u32>) -> Result<SizedKernel, GpuError>,
+    ) -> Result<Self, GpuError> {
         let groups: Vec<usize> = groups.collect::<BTreeSet<_>>().into_iter().collect();
         let numbers: Vec<u32> = groups.iter().flat_map(|&groups| [groups as u32, 0, 1]).collect();
         let calls = context.calls("workgroups of slots that run", &numbers)?;
-        let list = SizedKernel::new(context, &KRYLOV_RUNNING, 1, &args! { level, records, calls })?;
+        let list = list(&calls)?;
         Ok(Self { calls, groups, list })
     }
 
@@ -114,4 +126,28 @@ impl RunningSlots {
             call.append_running(list, slots, (&self.calls, 3 * place))
         })
     }
+}
+
+/// Has a profile count what the Krylov iterations of solutions moved since they were counted last:
+/// kernels with how many of them a slot has, and those that come after the iterations.
+pub fn count(context: &GpuContext, solves: &mut Solves, of_iteration: &[(&SizedKernel, usize)], finish: &[SizedKernel]) {
+    if !context.is_profiled() {
+        return;
+    }
+    let new = solves.records.iter().zip(&solves.counted).map(|(r, counted)| r.iterations.saturating_sub(*counted));
+    let new: Vec<u32> = new.collect();
+    for i in 0..new.iter().copied().max().unwrap_or(0) {
+        let running = || solves.records.iter().zip(&new).filter(|(_, new)| i < **new);
+        // Those that run are all in the same step, which takes one vector more than the last.
+        let vectors = running().map(|(r, new)| (r.steps + i).saturating_sub(*new) + 1).max().unwrap_or(0);
+        for (call, times) in of_iteration {
+            context.credit(call.bound.moved.as_ref(), times * running().count(), vectors as usize);
+        }
+    }
+    for record in &solves.records {
+        for call in finish {
+            context.credit(call.bound.moved.as_ref(), 1, record.steps as usize);
+        }
+    }
+    solves.counted = solves.records.iter().map(|record| record.iterations).collect();
 }

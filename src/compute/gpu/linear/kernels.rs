@@ -4,9 +4,10 @@ use super::super::arguments::{Argument, args};
 use super::super::buffers::{DeviceReal, StorageBuffer};
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
+use super::super::kernel::Kernel;
 use super::arrays::Arrays;
 use super::calls::{RunningSlots, SizedKernel};
-use super::levels::Levels;
+use super::levels::{LevelArrays, Levels};
 use super::plan::Plan;
 use super::sizes::{CHUNK, THREADS, row_threads};
 use super::sources::{
@@ -49,12 +50,10 @@ impl LinearKernels {
         blocks: &StorageBuffer<T>,
     ) -> Result<Self, GpuError> {
         let (finest, level) = (&plan.layout.levels[0], &levels.levels[0]);
-        let (unknowns, by_rows, w) = (3 * finest.nodes, row_threads(finest.nodes), &level.b);
-        let by_chunks = unknowns.div_ceil(CHUNK) * THREADS;
-        let Arrays { records, rows, rhs, solution, answer, basis, preconditioned, small, partial_sums, squares, .. } = arrays;
-        let call = |kernel, threads, arguments: &[Argument<'_>]| {
-            SizedKernel::new(context, kernel, threads, &[&args! { level: level.block }, arguments].concat())
-        };
+        let (by_rows, w) = (row_threads(finest.nodes), &level.b);
+        let Arrays { records, rows, rhs, solution, answer, preconditioned, small, partial_sums, .. } = arrays;
+        let vectors = VectorKernels { context, level, arrays };
+        let call = |kernel, threads, arguments: &[Argument<'_>]| vectors.call(kernel, threads, arguments);
         let with_product = |kernel, threads, x, arguments: &[Argument<'_>]| {
             SizedKernel::new(context, kernel, threads, &[&level.product(x), arguments].concat())
         };
@@ -69,36 +68,92 @@ impl LinearKernels {
             counts: arrays.counts,
             column: level.column,
         };
-        let dots = || call(&KRYLOV_DOTS, by_chunks, &args! { records, basis, w, partial_sums });
-        let orthogonalise = || call(&KRYLOV_ORTHOGONALISE, by_chunks, &args! { records, basis, partial_sums, w, small, squares });
-        let normalise = || call(&KRYLOV_NORMALISE, unknowns, &args! { records, w, basis });
-        // Twice is enough (Giraud, Langou & Rozloznik, Comput. Math. Appl. 50, 2005).
         let product = args! { is_fixed: level.fixed, records, w, preconditioned };
-        let iteration = vec![
-            with_product(&KRYLOV_PRODUCT, by_rows, &level.x, &product)?,
-            dots()?,
-            orthogonalise()?,
-            dots()?,
-            orthogonalise()?,
-            call(&KRYLOV_ADVANCE, 1, &args! { records, squares, small })?,
-        ];
-        let next = normalise()?;
+        let mut iteration = vec![with_product(&KRYLOV_PRODUCT, by_rows, &level.x, &product)?];
+        iteration.extend(vectors.orthogonalisation()?);
+        let next = vectors.normalise()?;
         let kernels = levels.cycle.iter().chain(&iteration).chain([&next]);
         let residual = args! { b: rhs, is_fixed: level.fixed, r: w, records };
         Ok(Self {
             assemble: SizedKernel::of(context.bind(&ASSEMBLE, T::PRECISION, &of_matrix)?, finest.blocks() / 2),
             prescribe: call(&PRESCRIBE, by_rows, &args! { rhs, is_fixed: level.fixed, solution })?,
-            residual: vec![with_product(&RESIDUAL, by_rows, solution, &residual)?, dots()?],
+            residual: vec![with_product(&RESIDUAL, by_rows, solution, &residual)?, vectors.dots()?],
             measure: call(&KRYLOV_MEASURE, 1, &args! { records, partial_sums })?,
-            begin: vec![call(&KRYLOV_BEGIN, 1, &args! { records, partial_sums, small })?, normalise()?],
+            begin: vec![call(&KRYLOV_BEGIN, 1, &args! { records, partial_sums, small })?, vectors.normalise()?],
             running: RunningSlots::new(context, kernels.map(SizedKernel::groups), &level.block, records)?,
             iteration,
             next,
-            finish: vec![
-                call(&KRYLOV_LEAST_SQUARES, 1, &args! { records, small })?,
-                call(&KRYLOV_COMBINE, unknowns, &args! { records, small, preconditioned, solution, answer })?,
-                with_product(&PLATE_FORCE, 1, answer, &args! { plate: arrays.plate, records })?,
-            ],
+            finish: {
+                let mut finish = vectors.answer()?;
+                finish.push(with_product(&PLATE_FORCE, 1, answer, &args! { plate: arrays.plate, records })?);
+                finish
+            },
         })
+    }
+}
+
+/// Binds kernels that take the vectors of FGMRES, whatever the matrix.
+#[derive(Clone, Copy, Debug)]
+pub struct VectorKernels<'a> {
+    /// The device.
+    pub context: &'a GpuContext,
+    /// The finest level.
+    pub level: &'a LevelArrays,
+    /// The other arrays.
+    pub arrays: &'a Arrays,
+}
+
+impl VectorKernels<'_> {
+    fn unknowns(&self) -> usize {
+        3 * self.level.size().0
+    }
+
+    fn by_chunks(&self) -> usize {
+        self.unknowns().div_ceil(CHUNK) * THREADS
+    }
+
+    fn call(&self, kernel: &'static Kernel, threads: usize, arguments: &[Argument<'_>]) -> Result<SizedKernel, GpuError> {
+        SizedKernel::new(self.context, kernel, threads, &[&args! { level: self.level.block }, arguments].concat())
+    }
+
+    /// Products of w with the basis; of a residual the square.
+    ///
+    /// # Errors
+    /// As [`GpuContext::bind`].
+    pub fn dots(&self) -> Result<SizedKernel, GpuError> {
+        let Arrays { records, basis, partial_sums, .. } = self.arrays;
+        self.call(&KRYLOV_DOTS, self.by_chunks(), &args! { records, basis, w: self.level.b, partial_sums })
+    }
+
+    /// The basis taken out of w, up to the decision which slots go on. Twice is enough (Giraud,
+    /// Langou & Rozloznik, Comput. Math. Appl. 50, 2005).
+    ///
+    /// # Errors
+    /// As [`GpuContext::bind`].
+    pub fn orthogonalisation(&self) -> Result<[SizedKernel; 5], GpuError> {
+        let Arrays { records, basis, partial_sums, small, squares, .. } = self.arrays;
+        let orthogonalise = || {
+            let arguments = args! { records, basis, partial_sums, w: self.level.b, small, squares };
+            self.call(&KRYLOV_ORTHOGONALISE, self.by_chunks(), &arguments)
+        };
+        let advance = self.call(&KRYLOV_ADVANCE, 1, &args! { records, squares, small })?;
+        Ok([self.dots()?, orthogonalise()?, self.dots()?, orthogonalise()?, advance])
+    }
+
+    fn normalise(&self) -> Result<SizedKernel, GpuError> {
+        let Arrays { records, basis, .. } = self.arrays;
+        self.call(&KRYLOV_NORMALISE, self.unknowns(), &args! { records, w: self.level.b, basis })
+    }
+
+    /// The answer, from the vectors of a cycle.
+    ///
+    /// # Errors
+    /// As [`GpuContext::bind`].
+    pub fn answer(&self) -> Result<Vec<SizedKernel>, GpuError> {
+        let Arrays { records, small, preconditioned, solution, answer, .. } = self.arrays;
+        Ok(vec![
+            self.call(&KRYLOV_LEAST_SQUARES, 1, &args! { records, small })?,
+            self.call(&KRYLOV_COMBINE, self.unknowns(), &args! { records, small, preconditioned, solution, answer })?,
+        ])
     }
 }

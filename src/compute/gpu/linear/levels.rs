@@ -46,9 +46,9 @@ pub struct LevelArrays {
     /// Inverses of the diagonal blocks, and what rounding takes from the rows,
     /// `[slot][inverse, lost][3 i + j][node]`.
     pub inverse: StorageBuffer<f32>,
-    other: StorageBuffer<f32>,
-    last_step: StorageBuffer<f32>,
-    residual: StorageBuffer<f32>,
+    pub(super) other: StorageBuffer<f32>,
+    pub(super) last_step: StorageBuffer<f32>,
+    pub(super) residual: StorageBuffer<f32>,
     transfer: Option<TransferArrays>,
     nodes: usize,
     width: usize,

@@ -8,6 +8,8 @@
 //! found. The list of a solve has as many Krylov iterations as whoever asks expects it to take, and
 //! one more. After each of them the device lists the slots that go on, and writes for how many the
 //! next kernels are dispatched; where some have not finished at the end of the list, more is sent.
+//!
+//! `tied` has the same for equal pairs, whose systems are applied and never formed.
 
 mod arrays;
 mod calls;
@@ -21,3 +23,5 @@ pub mod records;
 pub mod sizes;
 pub mod solver;
 pub mod sources;
+pub mod tied;
+pub mod tied_plan;

@@ -3,13 +3,14 @@
 use super::super::layout::{FRAME, POINT_ROWS};
 use super::solver::{Right, SideSolutions};
 use crate::compute::linear::{Side, SideReport, Solution, SolveRequest};
-use crate::contact::coulomb::Status;
+use crate::contact::coulomb::{Rows, Status};
 use crate::contact::frame::AXES;
 
 /// The systems of a dispatch, slot by slot.
 #[derive(Debug, Default)]
 pub struct Packed {
-    /// Contact rows `[slot][slides, force rows, displacement rows, frame][point]`.
+    /// Contact rows `[slot][slides, force rows, displacement rows, frame][point]`; of pairs -1 in
+    /// the place of what slides, for slaves that touch.
     pub rows: Vec<f32>,
     /// Fixed components `[slot][node]`, a bit each.
     pub fixed: Vec<u32>,
@@ -45,9 +46,13 @@ impl Packed {
     fn pack_rows(&mut self, system: &SolveRequest) {
         let (first, points) = (self.rows.len(), system.rows.len());
         self.rows.resize(first + POINT_ROWS * points, 0.0);
-        for (k, rows) in system.rows.iter().enumerate().filter(|(_, rows)| rows.status == Status::Slip) {
+        // What stands in the place of a slave's force is no row of the matrix: see `tie_met.wgsl`.
+        let is_tied = system.tie.is_some();
+        let counts = |rows: &Rows<f64>| rows.status == Status::Slip || is_tied && rows.status != Status::Open;
+        let mark = if is_tied { -1.0 } else { 1.0 };
+        for (k, rows) in system.rows.iter().enumerate().filter(|(_, rows)| counts(rows)) {
             let numbers =
-                std::iter::once(&1.0).chain(rows.force_rows.as_flattened()).chain(rows.displacement_rows.as_flattened());
+                std::iter::once(&mark).chain(rows.force_rows.as_flattened()).chain(rows.displacement_rows.as_flattened());
             for (c, &number) in numbers.enumerate() {
                 self.rows[first + c * points + k] = number as f32;
             }

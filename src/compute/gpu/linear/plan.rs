@@ -4,6 +4,7 @@ use super::super::layout::POINT_ROWS;
 use super::levels::{product_numbers, shared_numbers, slot_numbers};
 use super::records::Record;
 use super::sizes::{CHUNK, RESTART, small_numbers};
+use super::tied_plan::TiedPlan;
 use crate::linalg::layout::{HierarchyLayout, NOWHERE};
 use crate::mesh::Mesh;
 
@@ -17,12 +18,20 @@ pub struct Plan {
     pub(super) plate: Vec<u32>,
     pub(super) contact_points: usize,
     pub(super) upper_blocks: usize,
+    /// The systems of pairs, if the batch is of those.
+    pub(super) tied: Option<TiedPlan>,
 }
 
 impl Plan {
     /// The plan of a mesh; none if it has no hierarchy. `source` says for each block of the pattern
-    /// which block of the upper triangle it is.
-    pub fn new(mesh: &Mesh, pattern: &crate::linalg::Pattern, source: &[u32], upper_blocks: usize) -> Option<Self> {
+    /// which block of the upper triangle it is; `is_paired` says that the cases are equal pairs,
+    /// turned half round y.
+    pub fn new(
+        mesh: &Mesh,
+        pattern: &crate::linalg::Pattern,
+        (source, upper_blocks): (&[u32], usize),
+        is_paired: bool,
+    ) -> Option<Self> {
         if mesh.hierarchy.is_empty() || mesh.couple.is_some() {
             return None;
         }
@@ -39,6 +48,7 @@ impl Plan {
             plate: mesh.plate_nodes.clone(),
             contact_points: mesh.contact_nodes.len(),
             upper_blocks,
+            tied: if is_paired { TiedPlan::new(mesh, pattern, source) } else { None },
             layout,
         })
     }
@@ -55,7 +65,8 @@ impl Plan {
 
     /// Bytes of a slot's A P of the finest level.
     pub fn product_bytes(&self) -> u64 {
-        (product_numbers(&self.layout.levels[0]) * size_of::<f32>()) as u64
+        let own = (product_numbers(&self.layout.levels[0]) * size_of::<f32>()) as u64;
+        own.max(self.tied.as_ref().map_or(0, TiedPlan::product_bytes))
     }
 
     /// Bytes of a slot but for these: the widest array, and all together.
@@ -68,14 +79,16 @@ impl Plan {
             (widest, all) = (widest.max(array).max(product), all + sum + product);
         }
         let rows = POINT_ROWS * self.contact_points * size_of::<f32>();
-        ((widest * size_of::<f32>()) as u64, (all * size_of::<f32>() + rows + size_of::<Record>()) as u64)
+        let tied = self.tied.as_ref().map_or((0, 0), TiedPlan::bytes);
+        let own = ((widest * size_of::<f32>()) as u64, (all * size_of::<f32>() + rows + size_of::<Record>()) as u64);
+        (own.0.max(tied.0), own.1 + tied.1)
     }
 
     /// Bytes of what the slots share: columns, lists, prolongations.
     pub fn shared_bytes(&self) -> u64 {
         let levels: usize = self.layout.levels.iter().map(shared_numbers).sum();
         let own = self.source.len() + self.point_of.len() + self.plate.len();
-        ((levels + own) * size_of::<u32>()) as u64 + SMALL_ARRAYS
+        ((levels + own) * size_of::<u32>()) as u64 + SMALL_ARRAYS + self.tied.as_ref().map_or(0, TiedPlan::shared_bytes)
     }
 }
 

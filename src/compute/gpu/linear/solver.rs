@@ -6,11 +6,12 @@ use super::super::error::GpuError;
 use super::super::pipelines::KernelList;
 use super::super::pools::Pools;
 use super::arrays::Arrays;
-use super::calls::append;
+use super::calls::{SizedKernel, append, count};
 use super::kernels::LinearKernels;
 use super::levels::Levels;
 use super::plan::Plan;
 use super::records::{FULL, RUNNING, Record, Solves};
+use super::tied::{TiedSolver, Ties};
 use crate::compute::CaseModel;
 use crate::compute::linear::SideReport;
 
@@ -46,6 +47,8 @@ pub struct SlotSolver {
     pub(super) upper_numbers: usize,
     /// As `assemble.wgsl` has them.
     counts: [u32; 4],
+    /// The systems of pairs, if the batch is of those.
+    tied: Option<TiedSolver>,
 }
 
 impl SlotSolver {
@@ -65,7 +68,10 @@ impl SlotSolver {
         let arrays = Arrays::new(context, plan, slots, records)?;
         let kernels = LinearKernels::new(context, plan, (&levels, &arrays), blocks)?;
         let unknowns = 3 * plan.layout.levels[0].nodes;
-        Ok(Self { levels, arrays, kernels, unknowns, upper_numbers: 9 * plan.upper_blocks, counts: plan.counts() })
+        let tied =
+            plan.tied.as_ref().map(|tied| TiedSolver::new(context, tied, slots, (&levels.levels[0], &arrays, &kernels), blocks));
+        let tied = tied.transpose()?;
+        Ok(Self { levels, arrays, kernels, unknowns, upper_numbers: 9 * plan.upper_blocks, counts: plan.counts(), tied })
     }
 
     /// Has matrices turned into the frames of contact points where a case of the batch has a curved
@@ -98,6 +104,28 @@ impl SlotSolver {
         self.append_update(list, slots)
     }
 
+    /// The same of pairs with what ties them; whether their systems are solved here.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn update_tied(
+        &self,
+        context: &GpuContext,
+        list: &mut KernelList<'_>,
+        (rows, fixed): (&[f32], &[u32]),
+        ties: &Ties<'_>,
+    ) -> Result<bool, GpuError> {
+        let Some(tied) = &self.tied else { return Ok(false) };
+        context.upload_at(&self.arrays.rows, 0, rows)?;
+        context.upload_at(&self.levels.levels[0].fixed, 0, fixed)?;
+        if !tied.send(context, ties)? {
+            return Ok(false);
+        }
+        self.kernels.assemble.append(list, ties.len())?;
+        tied.append_update(list, ties.len())?;
+        Ok(true)
+    }
+
     /// The same with rows and fixed components that are on the device.
     ///
     /// # Errors
@@ -108,7 +136,8 @@ impl SlotSolver {
     }
 
     /// Solves with a right-hand side of each slot after the kernels of `list`; returns the
-    /// solutions `[slot][component][node]`. `and` are other arrays to be read at the first chance.
+    /// solutions `[slot][component][node]`. `and` are other arrays to be read at the first chance;
+    /// `is_tied` says that the systems are those of [`SlotSolver::update_tied`].
     ///
     /// # Errors
     /// The device's fault.
@@ -117,6 +146,7 @@ impl SlotSolver {
         context: &GpuContext,
         mut list: KernelList<'_>,
         right: &Right,
+        is_tied: bool,
         and: (&StorageBuffer<u32>, &mut [u32]),
     ) -> Result<(Vec<f32>, Vec<SideReport>), GpuError> {
         let slots = right.tolerance.len();
@@ -125,16 +155,21 @@ impl SlotSolver {
         if let Some(guess) = &right.guess {
             context.upload_at(&self.arrays.guess, 0, guess)?;
         }
-        self.set_out(context, &mut list, &solves, right.guess.is_some())?;
+        context.upload_at(&self.arrays.records, 0, &solves.records)?;
+        self.append_begin(&mut list, slots, right.guess.is_some(), is_tied)?;
         let mut answer = vec![0.0; slots * self.unknowns];
-        self.iterate(&mut list, solves.first_list(), slots)?;
+        self.iterate_of(&mut list, solves.first_list(), slots, is_tied)?;
         list.submit_and_read(&mut [self.read(&mut solves)?, self.arrays.answer.read(0, &mut answer)?, and.0.read(0, and.1)?])?;
-        self.count(context, &mut solves);
+        let count = |solves: &mut Solves| match self.tied(is_tied) {
+            Some(tied) => tied.count(context, &self.kernels.next, solves),
+            None => self.count(context, solves),
+        };
+        count(&mut solves);
         while solves.go_on() {
             let mut list = context.record();
-            self.take_up(context, &mut list, &mut solves)?;
+            self.take_up_of(context, &mut list, &mut solves, is_tied)?;
             list.submit_and_read(&mut [self.read(&mut solves)?, self.arrays.answer.read(0, &mut answer)?])?;
-            self.count(context, &mut solves);
+            count(&mut solves);
         }
         Ok((answer, solves.reports()))
     }
@@ -146,7 +181,7 @@ impl SlotSolver {
     /// The device's fault.
     pub fn set_out(&self, context: &GpuContext, list: &mut KernelList<'_>, solves: &Solves, guess: bool) -> Result<(), GpuError> {
         context.upload_at(&self.arrays.records, 0, &solves.records)?;
-        self.append_begin(list, solves.slots(), guess)
+        self.append_begin(list, solves.slots(), guess, false)
     }
 
     /// The same after other solutions of the list: `records`, to which it was told how these begin,
@@ -162,7 +197,7 @@ impl SlotSolver {
         guess: bool,
     ) -> Result<(), GpuError> {
         list.copy(records, 0, &self.arrays.records, 0, slots)?;
-        self.append_begin(list, slots, guess)
+        self.append_begin(list, slots, guess, false)
     }
 
     /// Appends a copy of how the present solutions stand.
@@ -173,13 +208,17 @@ impl SlotSolver {
         list.copy(&self.arrays.records, 0, records, 0, slots)
     }
 
-    fn append_begin(&self, list: &mut KernelList<'_>, slots: usize, guess: bool) -> Result<(), GpuError> {
+    fn residual(&self, is_tied: bool) -> &[SizedKernel] {
+        self.tied(is_tied).map_or(&self.kernels.residual, |tied| &tied.residual)
+    }
+
+    fn append_begin(&self, list: &mut KernelList<'_>, slots: usize, guess: bool, is_tied: bool) -> Result<(), GpuError> {
         self.kernels.prescribe.append(list, slots)?;
-        append(&self.kernels.residual, list, slots)?;
+        append(self.residual(is_tied), list, slots)?;
         self.kernels.measure.append(list, slots)?;
         if guess {
             list.copy(&self.arrays.guess, 0, &self.arrays.solution, 0, slots * self.unknowns)?;
-            append(&self.kernels.residual, list, slots)?;
+            append(self.residual(is_tied), list, slots)?;
         }
         append(&self.kernels.begin, list, slots)
     }
@@ -189,6 +228,16 @@ impl SlotSolver {
     /// # Errors
     /// The device's fault.
     pub fn take_up(&self, context: &GpuContext, list: &mut KernelList<'_>, solves: &mut Solves) -> Result<(), GpuError> {
+        self.take_up_of(context, list, solves, false)
+    }
+
+    fn take_up_of(
+        &self,
+        context: &GpuContext,
+        list: &mut KernelList<'_>,
+        solves: &mut Solves,
+        is_tied: bool,
+    ) -> Result<(), GpuError> {
         let slots = solves.slots();
         // All slots are in the same step of their cycles: those that go on are all full, or none.
         let records = &mut solves.records;
@@ -201,10 +250,10 @@ impl SlotSolver {
         }
         if !full.is_empty() {
             list.count_for(Some(full.len()));
-            append(&self.kernels.residual, list, slots)?;
+            append(self.residual(is_tied), list, slots)?;
             append(&self.kernels.begin, list, slots)?;
         }
-        self.iterate(list, MORE, slots)
+        self.iterate_of(list, MORE, slots, is_tied)
     }
 
     /// What is to be read back of solutions.
@@ -218,25 +267,13 @@ impl SlotSolver {
     /// Has a profile count what the Krylov iterations moved that came back in `solves`, which are
     /// those of one list, and the answers after them.
     pub fn count(&self, context: &GpuContext, solves: &mut Solves) {
-        if !context.is_profiled() {
-            return;
-        }
-        let new = solves.records.iter().zip(&solves.counted).map(|(r, counted)| r.iterations.saturating_sub(*counted));
-        let new: Vec<u32> = new.collect();
-        for i in 0..new.iter().copied().max().unwrap_or(0) {
-            let running = || solves.records.iter().zip(&new).filter(|(_, new)| i < **new);
-            // Those that run are all in the same step, which takes one vector more than the last.
-            let vectors = running().map(|(r, new)| (r.steps + i).saturating_sub(*new) + 1).max().unwrap_or(0);
-            for call in self.levels.cycle.iter().chain(&self.kernels.iteration).chain([&self.kernels.next]) {
-                context.credit(call.bound.moved.as_ref(), running().count(), vectors as usize);
-            }
-        }
-        for record in &solves.records {
-            for call in &self.kernels.finish {
-                context.credit(call.bound.moved.as_ref(), 1, record.steps as usize);
-            }
-        }
-        solves.counted = solves.records.iter().map(|record| record.iterations).collect();
+        let of_iteration = self.levels.cycle.iter().chain(&self.kernels.iteration).chain([&self.kernels.next]);
+        count(context, solves, &of_iteration.map(|call| (call, 1)).collect::<Vec<_>>(), &self.kernels.finish);
+    }
+
+    /// The systems of pairs, where a solution is one of those.
+    fn tied(&self, is_tied: bool) -> Option<&TiedSolver> {
+        self.tied.as_ref().filter(|_| is_tied)
     }
 
     /// The arrays that Newton's iterates fill and read.
@@ -255,6 +292,13 @@ impl SlotSolver {
     /// # Errors
     /// The device's fault.
     pub fn iterate(&self, list: &mut KernelList<'_>, times: usize, slots: usize) -> Result<(), GpuError> {
+        self.iterate_of(list, times, slots, false)
+    }
+
+    fn iterate_of(&self, list: &mut KernelList<'_>, times: usize, slots: usize, is_tied: bool) -> Result<(), GpuError> {
+        if let Some(tied) = self.tied(is_tied) {
+            return tied.iterate(list, &self.kernels.next, times, slots);
+        }
         // Which slots leave them out is known when they have run: see `count`.
         list.count_for(Some(0));
         let running = &self.kernels.running;

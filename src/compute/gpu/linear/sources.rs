@@ -101,3 +101,31 @@ pub static KRYLOV_COMBINE: Kernel = Kernel::new("krylov_combine", &[LEVEL, RECOR
 /// The plate's force along the solution.
 pub static PLATE_FORCE: Kernel =
     Kernel::new("plate_force", &[LEVEL, RECORD, HALVES, PRODUCT, ROW_TIMES, SUMS, source!("linalg/plate_force.wgsl")]);
+
+const TIE: ShaderSource = source!("linalg/tie.wgsl");
+const TIE_MET: ShaderSource = source!("linalg/tie_met.wgsl");
+
+/// Half of a pair's body: its finest matrix.
+pub static FOLD_MATRIX: Kernel = Kernel::new("fold_matrix", &[LEVEL, HALVES, source!("linalg/fold_matrix.wgsl")]);
+
+/// Forces of half of the body.
+pub static FOLD: Kernel = Kernel::new("fold", &[LEVEL, RECORD, source!("linalg/fold.wgsl")]);
+
+/// Displacements of all of it.
+pub static UNFOLD: Kernel = Kernel::new("unfold", &[LEVEL, RECORD, source!("linalg/unfold.wgsl")]);
+
+/// A vector through a map of a pair's interface.
+pub static TIE_MAP: Kernel = Kernel::new("tie_map", &[LEVEL, RECORD, TIE, source!("linalg/tie_map.wgsl")]);
+
+/// K times a vector.
+pub static TIE_PRODUCT: Kernel =
+    Kernel::new("tie_product", &[LEVEL, RECORD, HALVES, PRODUCT, ROW_TIMES, source!("linalg/tie_product.wgsl")]);
+
+/// A pair's system times the preconditioned vector, which is kept.
+pub static TIE_MEET: Kernel = Kernel::new("tie_meet", &[LEVEL, RECORD, TIE_MET, source!("linalg/tie_meet.wgsl")]);
+
+/// The residual of a pair's system.
+pub static TIE_RESIDUAL: Kernel = Kernel::new("tie_residual", &[LEVEL, RECORD, TIE_MET, source!("linalg/tie_residual.wgsl")]);
+
+/// Which halves run.
+pub static TIE_RUNNING: Kernel = Kernel::new("tie_running", &[LEVEL, RECORD, source!("linalg/tie_running.wgsl")]);
