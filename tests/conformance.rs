@@ -91,9 +91,34 @@ mod kernels {
     for_a_device!(kernels: a_krylov_cycle_obeys_its_equations);
 }
 
-/// Linear systems of equal pairs.
+/// Linear systems of equal pairs, in both precisions of a device.
 mod systems_of_pairs {
-    for_a_device!(pairs: systems_are_the_cpus, systems_of_whole_spheres_are_the_cpus);
+    use asperity::internals::compute::gpu::Precision;
+    use asperity::internals::conformance::pairs::{Bounds, systems_are_the_cpus, systems_of_whole_spheres_are_the_cpus};
+
+    #[test]
+    fn systems_are_the_cpus_in_f64() {
+        let Some(context) = crate::device::device("systems_are_the_cpus_in_f64", Precision::F64) else { return };
+        systems_are_the_cpus::<f64>(&context.into(), &Bounds::F64);
+    }
+
+    #[test]
+    fn systems_are_the_cpus_in_f32() {
+        let Some(context) = crate::device::device("systems_are_the_cpus_in_f32", Precision::F32) else { return };
+        systems_are_the_cpus::<f32>(&context.into(), &Bounds::F32);
+    }
+
+    #[test]
+    fn systems_of_whole_spheres_are_the_cpus_in_f64() {
+        let Some(context) = crate::device::device("systems_of_whole_spheres_are_the_cpus_in_f64", Precision::F64) else { return };
+        systems_of_whole_spheres_are_the_cpus::<f64>(&context.into(), &Bounds::F64);
+    }
+
+    #[test]
+    fn systems_of_whole_spheres_are_the_cpus_in_f32() {
+        let Some(context) = crate::device::device("systems_of_whole_spheres_are_the_cpus_in_f32", Precision::F32) else { return };
+        systems_of_whole_spheres_are_the_cpus::<f32>(&context.into(), &Bounds::F32);
+    }
 }
 
 /// Newton's iterates against the CPU's.

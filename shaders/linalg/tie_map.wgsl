@@ -18,7 +18,7 @@ const TIE_OF_ALL: u32 = 4u;
 fn tie_map(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     let slot = records[group.y].running;
     let node = NODES_IN_GROUP * group.x + local % NODES_IN_GROUP;
-    if (tie.w & TIE_OF_ALL) == 0u && records[slot].done != RUNNING || node >= level.nodes {
+    if ((tie.w & TIE_OF_ALL) == 0u && records[slot].done != RUNNING) || node >= level.nodes {
         return;
     }
     let component = local / NODES_IN_GROUP;

@@ -106,6 +106,24 @@ macro_rules! in_both {
     };
 }
 
+/// The same of those that compare a device with the CPU's own solver.
+macro_rules! in_both_on_a_device {
+    ($list:ident, $module:ident: $($name:literal $body:ident),+ $(,)?) => {
+        $(
+            $list.push(Comparison {
+                name: $name,
+                precision: Precision::F64,
+                body: |context| $module::$body::<f64>(context, &$module::Bounds::F64),
+            });
+            $list.push(Comparison {
+                name: $name,
+                precision: Precision::F32,
+                body: |context| $module::$body::<f32>(context, &$module::Bounds::F32),
+            });
+        )+
+    };
+}
+
 /// The comparisons that a device with these abilities is put to; without double precision those in
 /// f32.
 pub fn comparisons(has_double: bool) -> Vec<Comparison> {
@@ -133,14 +151,16 @@ pub fn comparisons(has_double: bool) -> Vec<Comparison> {
         "contact rows of what is no number" nan_is_not_swallowed,
     );
     in_both!(all, assembly, batch::OnGpu: "a batch and its cases alone" a_batch_has_the_bits_of_its_cases_alone);
-    let in_double: [(&'static str, TestBody); 7] = [
+    in_both_on_a_device!(all, pairs:
+        "linear systems of pairs" systems_are_the_cpus,
+        "linear systems of pairs of whole spheres" systems_of_whole_spheres_are_the_cpus,
+    );
+    let in_double: [(&'static str, TestBody); 5] = [
         // The solver's kernels are in f32 beside either residual.
         ("linear systems", |context| linear::meets_tolerances_as_the_cpu_does::<f64>(context, linear::own_numbers)),
         ("linear systems, elements halved twice", |context| {
             linear::meets_tolerances_on_two_levels::<f64>(context, linear::own_numbers)
         }),
-        ("linear systems of pairs", pairs::systems_are_the_cpus),
-        ("linear systems of pairs of whole spheres", pairs::systems_of_whole_spheres_are_the_cpus),
         ("linear systems, down to one element", linear::meets_tolerances_down_to_one_element),
         ("Krylov cycles: their equations", kernels::a_krylov_cycle_obeys_its_equations),
         ("trials and corrections of iterates", iterate::trials_and_corrections_are_the_cpus),

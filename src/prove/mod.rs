@@ -198,7 +198,9 @@ fn left_out(options: &Options, has_double: bool) -> Vec<String> {
         said.extend(parity::left_out(has_double));
     }
     if options.has(ProofPart::Times) {
-        said.push("Whole jobs are those at 4 elements, two at a time; larger meshes and other batches are not run.".to_owned());
+        let jobs = "Whole jobs are those at 4 elements, two at a time: larger meshes and other batches are not run, and the \
+                    smallest batch that pays is not found.";
+        said.push(jobs.to_owned());
     }
     said
 }

@@ -53,6 +53,14 @@ const BUT: &[(&str, &[&str], But)] = &[
     ("krylov_dots", &["basis"], But::PerVector),
     ("krylov_orthogonalise", &["basis"], But::PerVector),
     ("krylov_combine", &["preconditioned"], But::PerVector),
+    // One of five maps of a pair, in the room that all have; rows of slaves alone.
+    ("tie_map", &["maps"], But::Left),
+    ("tie_meet", &["rows"], But::Left),
+    ("tie_residual", &["rows"], But::Left),
+    // Both halves of a body.
+    ("fold", &["to", "is_fixed"], But::Twice),
+    ("unfold", &["given"], But::Twice),
+    ("fold_matrix", &["matrix"], But::Twice),
     // What a trial begins with is one of these.
     ("iterate_place", &["starts", "before", "correction", "facing"], But::Left),
     ("iterate_place", &["iterates"], But::Once),

@@ -169,7 +169,8 @@ impl Binder<'_> {
     fn before(&mut self) -> Result<Vec<SizedKernel>, GpuError> {
         let (level, finest, records) = (self.level, self.finest, &self.arrays.records);
         let FoldedBody { nodes_of, whole_nodes, .. } = self.folded;
-        let folds = args! { level: finest.block, nodes_of, is_fixed: finest.fixed, records, given: level.residual, to: finest.b, whole_nodes };
+        let folds = args! { level: finest.block, nodes_of, is_fixed: finest.fixed, records, whole_nodes };
+        let folds = [&folds[..], &args! { given: level.residual, to: finest.b }].concat();
         Ok(vec![
             self.map((HALVES, TIE_KEEPS_FREE), &level.b, &level.other)?,
             self.map((NODAL, 0), &level.other, &level.residual)?,
