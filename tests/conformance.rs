@@ -96,6 +96,8 @@ mod systems_of_pairs {
     use asperity::internals::compute::gpu::Precision;
     use asperity::internals::conformance::pairs::{Bounds, systems_are_the_cpus, systems_of_whole_spheres_are_the_cpus};
 
+    for_a_device!(pairs: a_pair_without_room_disturbs_no_other);
+
     #[test]
     fn systems_are_the_cpus_in_f64() {
         let Some(context) = crate::device::device("systems_are_the_cpus_in_f64", Precision::F64) else { return };

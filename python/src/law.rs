@@ -8,10 +8,9 @@ use asperity::Canceller;
 use asperity::case::Segment;
 use asperity::contact_law::path::PathPoint;
 use asperity::law::check::{CheckedPath, check, protocol};
-use asperity::law::data::ShearPoint;
 use asperity::law::export::{Language, law_files, law_source};
 use asperity::law::formulas::fit::fit;
-use asperity::law::formulas::predict::{NormalSource, Prediction, predict};
+use asperity::law::formulas::predict::{NormalSource, predict};
 use asperity::law::formulas::prior::Prior;
 use asperity::law::interpolated::{self, Interpolated};
 use asperity::law::range::OutOfRange;
@@ -278,16 +277,8 @@ impl NativeLaw {
         let LawFile::Formulas(law) = self.law.as_ref() else {
             return Err(refused("press: is True, and the law has no formulas that take F_N0 and a0. Allowed: False"));
         };
-        let Prediction { curve, out_of_range, inputs, .. } = predict(law, case, NormalSource::Press).map_err(failed)?;
-        let point = |p: &ShearPoint| PathPoint {
-            segment: 1,
-            h: inputs.h,
-            delta_t: p.delta_t,
-            f_n: p.f_n,
-            f_t: p.f_t,
-            ..PathPoint::default()
-        };
-        Ok((curve.iter().map(point).collect(), out_of_range))
+        let prediction = predict(law, case, NormalSource::Press).map_err(failed)?;
+        Ok((prediction.points(), prediction.out_of_range))
     }
 }
 

@@ -30,15 +30,7 @@ fn assemble(@builtin(global_invocation_id) id: vec3<u32>) {
     let block = 2u * id.x - node;
     let first = block_of(slot, node, block);
     let second = block_of(slot, node, block + level.nodes);
-    let out = 18u * slot * words + id.x;
-    for (var j = 0u; j < 3u; j++) {
-        for (var i = 0u; i < 3u; i++) {
-            let a = single_bits(first[j][i]);
-            let b = single_bits(second[j][i]);
-            matrix[out + (3u * i + j) * words] = upper_halves(a, b);
-            matrix[out + (9u + 3u * i + j) * words] = lower_halves(a, b);
-        }
-    }
+    keep_halves(18u * slot * words + id.x, words, first, second);
 }
 
 // Block k of a node's row, which is number k nodes + node.

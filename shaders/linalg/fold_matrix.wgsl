@@ -22,15 +22,7 @@ fn fold_matrix(@builtin(global_invocation_id) id: vec3<u32>) {
     let first = folded(slot, block);
     let second = folded(slot, block + level.nodes);
     for (var parity = 0u; parity < 2u; parity++) {
-        let out = 18u * (2u * slot + parity) * words + id.x;
-        for (var j = 0u; j < 3u; j++) {
-            for (var i = 0u; i < 3u; i++) {
-                let a = single_bits(first[j][i]);
-                let b = single_bits(second[j][i]);
-                matrix[out + (3u * i + j) * words] = upper_halves(a, b);
-                matrix[out + (9u + 3u * i + j) * words] = lower_halves(a, b);
-            }
-        }
+        keep_halves(18u * (2u * slot + parity) * words + id.x, words, first, second);
     }
 }
 

@@ -1,7 +1,7 @@
 // P^T (A P), the matrix of the next level; a thread two blocks of a row, whose halves share words.
 
 @group(0) @binding(4) var<storage, read> given: array<real>;        // A P: [slot][3 i + j][block]
-@group(0) @binding(5) var<storage, read_write> to: array<u32>;      // see halves.wgsl
+@group(0) @binding(5) var<storage, read_write> matrix: array<u32>;  // see halves.wgsl
 
 @compute @workgroup_size(64)
 fn galerkin_coarse(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -13,15 +13,7 @@ fn galerkin_coarse(@builtin(global_invocation_id) id: vec3<u32>) {
     let block = 2u * id.x - id.x % level.coarse_nodes;
     let first = coarse_block(slot, block);
     let second = coarse_block(slot, block + level.coarse_nodes);
-    let out = 18u * slot * count + id.x;
-    for (var j = 0u; j < 3u; j++) {
-        for (var i = 0u; i < 3u; i++) {
-            let a = single_bits(first[j][i]);
-            let b = single_bits(second[j][i]);
-            to[out + (3u * i + j) * count] = upper_halves(a, b);
-            to[out + (9u + 3u * i + j) * count] = lower_halves(a, b);
-        }
-    }
+    keep_halves(18u * slot * count + id.x, count, first, second);
 }
 
 fn coarse_block(slot: u32, block: u32) -> mat3x3<real> {

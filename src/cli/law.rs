@@ -20,7 +20,7 @@ use crate::contact_law::path::PathPoint;
 use crate::law::data::raw_sentence;
 use crate::law::file::BUILT_IN;
 use crate::law::formulas::fit::fit;
-use crate::law::formulas::predict::{NormalSource, Prediction, predict};
+use crate::law::formulas::predict::{NormalSource, predict};
 use crate::law::formulas::prior::Prior;
 use crate::law::interpolated::{self, Interpolated};
 use crate::law::range::OutOfRange;
@@ -295,14 +295,6 @@ fn pressed(law: &LawFile, case: &Case, path: &Path) -> Result<(Vec<PathPoint>, V
     let LawFile::Formulas(law) = law else {
         return Err(LawError::NoFormulas { path: path.to_owned(), what: "--press" });
     };
-    let Prediction { curve, out_of_range, inputs, .. } = predict(law, case, NormalSource::Press)?;
-    let point = |p: &crate::law::data::ShearPoint| PathPoint {
-        segment: 1,
-        h: inputs.h,
-        delta_t: p.delta_t,
-        f_n: p.f_n,
-        f_t: p.f_t,
-        ..PathPoint::default()
-    };
-    Ok((curve.iter().map(point).collect(), out_of_range))
+    let prediction = predict(law, case, NormalSource::Press)?;
+    Ok((prediction.points(), prediction.out_of_range))
 }

@@ -126,6 +126,26 @@ fn solve<R: DeviceReal>(gpu: &mut Gpu<R>, systems: &[PairSystem]) -> Vec<Solutio
     super::linear::solved(gpu, requests).into_iter().map(solution).collect()
 }
 
+/// A pair whose maps are larger than the room for them is not solved, and another beside it has the
+/// bits that it has alone.
+pub fn a_pair_without_room_disturbs_no_other(context: &Arc<GpuContext>) {
+    let models = pairs(&mesh());
+    let mut gpu = Gpu::<f64>::new(context.clone(), models.clone()).unwrap();
+    let [mut large, other] = [0, 1].map(|case| system::<f64>(case, &models, 1e-4).request);
+    let tie = large.tie.as_mut().unwrap();
+    let mut maps = (*tie.maps).clone();
+    let more = maps.expand.block.len() * 1000;
+    maps.expand.column.extend(std::iter::repeat_n(0, more));
+    maps.expand.block.extend(std::iter::repeat_n([0.0; 9], more));
+    *maps.expand.start.last_mut().unwrap() += more as u32;
+    tie.maps = Arc::new(maps);
+    let alone = super::linear::solved(&mut gpu, vec![(1, other.clone())]).remove(0);
+    let both = super::linear::solved(&mut gpu, vec![(0, large), (1, other)]);
+    assert!(both[0].solutions.is_empty());
+    let bits = |of: &crate::compute::linear::Solved| of.solutions[0].x.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(&both[1]), bits(&alone));
+}
+
 /// Systems of pairs of which half a sphere is meshed.
 pub fn systems_are_the_cpus<R: DeviceReal>(context: &Arc<GpuContext>, bounds: &Bounds) {
     systems_are_the_cpus_on::<R>(context, bounds, &mesh());

@@ -78,8 +78,8 @@ fn the_command_writes_what_the_library_makes() {
             .output()
             .unwrap()
     };
-    let case_file = "[sphere]\nradius = 0.5\n[material]\nyoungs_modulus = 70e3\npoissons_ratio = 0.3\n[material.hardening]\nlaw = \"ideal\"\n\
-                     yield_stress = 140.0\n[contact]\nfriction = 0.25\n[[path]]\nindentation = 0.01\n";
+    let case_file = "[sphere]\nradius = 0.5\n[material]\nyoungs_modulus = 70e3\npoissons_ratio = 0.3\n\
+                     [material.hardening]\nlaw = \"ideal\"\nyield_stress = 140.0\n[contact]\nfriction = 0.25\n[[path]]\nindentation = 0.01\n";
     fs::write(dir.path().join("case.toml"), case_file).unwrap();
     let either = LawFile::Formulas(Box::new(law.clone()));
     for (arguments, language) in
@@ -139,7 +139,8 @@ int main(int argc, char **argv) {
     huge[0] = 0.6e200;
     huge[1] = 0.8e200;
     asperity_update(t, 1.0, 70e3, &state, 0.02, huge, &next, &out, NULL);
-    if (!same(out.f_t[0], far.f_t[0]) || !same(out.f_t[1], far.f_t[1]) || !same(hypot(out.f_t[0], out.f_t[1]), t->friction * out.f_n)) return 6;
+    if (!same(out.f_t[0], far.f_t[0]) || !same(out.f_t[1], far.f_t[1])) return 6;
+    if (!same(hypot(out.f_t[0], out.f_t[1]), t->friction * out.f_n)) return 6;
     printf("%g %g\n", good.f_n, out.f_t[1]);
     return 0;
 }

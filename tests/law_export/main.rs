@@ -96,8 +96,8 @@ const CHECK_MODULE: [&str; 2] = ["asperity_law.py", "asperity_law_vectors.csv"];
 /// A case of a hardening law given as TOML.
 fn case(hardening: &str) -> Case {
     let text = format!(
-        "[sphere]\nradius = 0.5\n[material]\nyoungs_modulus = 70e3\npoissons_ratio = 0.3\n[material.hardening]\n{hardening}\n[contact]\n\
-         friction = 0.25\n[[path]]\nindentation = 0.01\n"
+        "[sphere]\nradius = 0.5\n[material]\nyoungs_modulus = 70e3\npoissons_ratio = 0.3\n[material.hardening]\n\
+         {hardening}\n[contact]\nfriction = 0.25\n[[path]]\nindentation = 0.01\n"
     );
     Case::parse(&text, "case.toml", &[]).unwrap()
 }

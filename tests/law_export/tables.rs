@@ -119,8 +119,8 @@ fn table_against(hardening: &str, opponent: &str) -> LawFile {
         frame: (!opponent.is_empty() && !opponent.contains("flat = true")).then_some(Frame::LineOfCentres),
         program: "a test".to_owned(),
         case: format!(
-            "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 1.0\npoissons_ratio = 0.25\n[material.hardening]\n{hardening}\n[contact]\n\
-             friction = 0.4\n{opponent}\n[[path]]\nindentation = 0.01\n"
+            "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 1.0\npoissons_ratio = 0.25\n[material.hardening]\n\
+             {hardening}\n[contact]\nfriction = 0.4\n{opponent}\n[[path]]\nindentation = 0.01\n"
         ),
         range: Interval { from: levels[0].h, to: levels[11].h },
         elements_per_contact_radius: 8,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::batch::{Batch, Parts};
+use super::batch::{Batch, LinearAnswers, Parts};
 use super::buffers::DeviceReal;
 use super::context::GpuContext;
 use super::dispatch::{Dispatch, Evaluation, status_of};
@@ -228,11 +228,13 @@ impl<R: DeviceReal> Gpu<R> {
         let packed = Packed::new(&systems);
         let ties: Vec<&PairTie> = systems.iter().filter_map(|system| system.tie.as_ref()).collect();
         let of_rows = (&packed.rows[..], &packed.fixed[..]);
-        let (outcomes, answers) = self.batch()?.linear(dispatch, &increments, of_rows, &ties, &packed.sides)?;
-        let of_slots = systems.iter().zip(outcomes).enumerate();
-        Ok(of_slots
-            .map(|(slot, (system, outcome))| Answer::Solved(Solved { outcome, solutions: packed.unpack(slot, &answers, system) }))
-            .collect())
+        let LinearAnswers { outcomes, sides, solved } =
+            self.batch()?.linear(dispatch, &increments, of_rows, &ties, &packed.sides)?;
+        let of_slot = |(slot, (system, outcome)): (usize, (&&SolveRequest, Evaluated))| {
+            let solutions = if solved[slot] { packed.unpack(slot, &sides, system) } else { Vec::new() };
+            Answer::Solved(Solved { outcome, solutions })
+        };
+        Ok(systems.iter().zip(outcomes).enumerate().map(of_slot).collect())
     }
 
     fn commit(&mut self, dispatch: &Dispatch, calls: &mut [(usize, Call)]) -> Result<Vec<Answer>, ComputeError> {

@@ -58,6 +58,17 @@ pub struct Parts {
     pub iterates: bool,
 }
 
+/// What came of the linear systems of a dispatch.
+#[derive(Debug)]
+pub struct LinearAnswers {
+    /// How each slot's tangent ended.
+    pub outcomes: Vec<Evaluated>,
+    /// By side, of all slots.
+    pub sides: Vec<SideSolutions>,
+    /// By slot, whether these are solutions: of a pair whose maps have no room here they are not.
+    pub solved: Vec<bool>,
+}
+
 /// Upper blocks of tangents, in the precision in which they are computed.
 #[derive(Clone, Debug)]
 pub enum UpperBlocks<R> {
@@ -147,7 +158,10 @@ impl<R: DeviceReal> Batch<R> {
         let mut out = Vec::new();
         for (group, (resident, _)) in self.groups.iter().enumerate() {
             let range = resident.first..resident.first + resident.count;
-            let requests: Vec<usize> = (0..cases.len()).filter(|&i| range.contains(&cases[i])).collect();
+            let mut requests: Vec<usize> = (0..cases.len()).filter(|&i| range.contains(&cases[i])).collect();
+            // A case keeps its slot while the same ones ask, whoever asks first: what is there of
+            // it is not sent again.
+            requests.sort_by_key(|&i| cases[i]);
             out.extend(requests.chunks(self.slots).map(|requests| Dispatch {
                 group,
                 requests: requests.to_vec(),
@@ -297,7 +311,7 @@ impl<R: DeviceReal> Batch<R> {
 
     /// The tangents at increments, and the solutions of the systems of each side with them (see
     /// [`SlotSolver::update`] and [`SlotSolver::solve`]), in one submission a side. What ties pairs
-    /// is in `ties`: none of one body. Without solutions pairs are not solved here.
+    /// is in `ties`: none of one body.
     ///
     /// # Errors
     /// The device's fault.
@@ -308,7 +322,7 @@ impl<R: DeviceReal> Batch<R> {
         (rows, fixed): (&[f32], &[u32]),
         ties: &Ties<'_>,
         sides: &[Right],
-    ) -> Result<(Vec<Evaluated>, Vec<SideSolutions>), GpuError> {
+    ) -> Result<LinearAnswers, GpuError> {
         let (context, slots) = (&self.context, dispatch.cases.len());
         let nothing = || GpuError::Length { what: "the levels of the mesh's hierarchy".into(), expected: 1, given: 0 };
         let linear = self.linear.as_ref().ok_or_else(nothing)?;
@@ -316,17 +330,21 @@ impl<R: DeviceReal> Batch<R> {
         let mut list = context.record();
         self.append(dispatch, Evaluation::Tangent, &mut list)?;
         let mut first = vec![u32::MAX; slots];
+        let mut solved = vec![true; slots];
         if ties.is_empty() {
             linear.update(context, &mut list, rows, fixed, slots)?;
-        } else if !linear.update_tied(context, &mut list, (rows, fixed), ties)? {
-            return Ok((outcomes(&first), Vec::new()));
+        } else {
+            solved = linear.update_tied(context, &mut list, (rows, fixed), ties)?;
+        }
+        if !solved.contains(&true) {
+            return Ok(LinearAnswers { outcomes: outcomes(&first), sides: Vec::new(), solved });
         }
         let mut answers = Vec::with_capacity(sides.len());
         for right in sides {
             let list = std::mem::replace(&mut list, context.record());
             answers.push(linear.solve(context, list, right, !ties.is_empty(), (&self.scratch.first_invalid, &mut first))?);
         }
-        Ok((outcomes(&first), answers))
+        Ok(LinearAnswers { outcomes: outcomes(&first), sides: answers, solved })
     }
 
     /// Contact rows `[slot][component][point]` and their status, from forces and increments

@@ -3,6 +3,7 @@
 use super::model::{Axisymmetric, Law, Parameters};
 use super::normal::NormalState;
 use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
+use crate::contact_law::path::PathPoint;
 use crate::law::LawError;
 use crate::law::data::ShearPoint;
 use crate::law::range::{OutOfRange, clamped};
@@ -32,6 +33,21 @@ pub struct Prediction {
     pub curve: Vec<ShearPoint>,
     /// What lies outside of the law's range.
     pub out_of_range: Vec<OutOfRange>,
+}
+
+impl Prediction {
+    /// The curve as points of the case's path, whose second segment it is.
+    pub fn points(&self) -> Vec<PathPoint> {
+        let point = |p: &ShearPoint| PathPoint {
+            segment: 1,
+            h: self.inputs.h,
+            delta_t: p.delta_t,
+            f_n: p.f_n,
+            f_t: p.f_t,
+            ..PathPoint::default()
+        };
+        self.curve.iter().map(point).collect()
+    }
 }
 
 /// Intervals of a curve up to full slip, finer where it is steep.

@@ -387,7 +387,7 @@ impl Binder<'_> {
     fn galerkin(&self, level: &LevelArrays, transfer: &TransferArrays, next: &LevelArrays) -> Result<[SizedKernel; 2], GpuError> {
         let block = &args! { level: level.block };
         let product = args! { given: level.matrix, to: transfer.product, column: level.column, is_fixed: level.fixed };
-        let coarse = args! { given: transfer.product, to: next.matrix };
+        let coarse = args! { given: transfer.product, matrix: next.matrix };
         let (product_lists, coarse_lists) = (transfer.product_lists.as_lists(), transfer.coarse_lists.as_lists());
         Ok([
             self.call(&GALERKIN_PRODUCT, transfer.products, &[block, &product_lists, &product])?,

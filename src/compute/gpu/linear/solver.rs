@@ -104,7 +104,7 @@ impl SlotSolver {
         self.append_update(list, slots)
     }
 
-    /// The same of pairs with what ties them; whether their systems are solved here.
+    /// The same of pairs with what ties them; which of their systems are solved here.
     ///
     /// # Errors
     /// The device's fault.
@@ -114,16 +114,14 @@ impl SlotSolver {
         list: &mut KernelList<'_>,
         (rows, fixed): (&[f32], &[u32]),
         ties: &Ties<'_>,
-    ) -> Result<bool, GpuError> {
-        let Some(tied) = &self.tied else { return Ok(false) };
+    ) -> Result<Vec<bool>, GpuError> {
+        let Some(tied) = &self.tied else { return Ok(vec![false; ties.len()]) };
         context.upload_at(&self.arrays.rows, 0, rows)?;
         context.upload_at(&self.levels.levels[0].fixed, 0, fixed)?;
-        if !tied.send(context, ties)? {
-            return Ok(false);
-        }
+        let has_room = tied.send(context, ties)?;
         self.kernels.assemble.append(list, ties.len())?;
         tied.append_update(list, ties.len())?;
-        Ok(true)
+        Ok(has_room)
     }
 
     /// The same with rows and fixed components that are on the device.

@@ -6,6 +6,7 @@ use super::super::source::{ShaderSource, source};
 const LEVEL: ShaderSource = source!("linalg/level.wgsl");
 const RECORD: ShaderSource = source!("linalg/record.wgsl");
 const HALVES: ShaderSource = source!("linalg/halves.wgsl");
+const KEEP_HALVES: ShaderSource = source!("linalg/keep_halves.wgsl");
 const PRODUCT: ShaderSource = source!("linalg/product.wgsl");
 const ROW_TIMES: ShaderSource = source!("linalg/row_times.wgsl");
 const ROUNDED_ROW_TIMES: ShaderSource = source!("linalg/rounded_row_times.wgsl");
@@ -17,7 +18,7 @@ const SMALL: ShaderSource = source!("linalg/small.wgsl");
 const NORM: ShaderSource = source!("linalg/norm.wgsl");
 
 /// The tangent as the finest level's matrix.
-pub static ASSEMBLE: Kernel = Kernel::new("assemble", &[LEVEL, HALVES, source!("linalg/assemble.wgsl")]);
+pub static ASSEMBLE: Kernel = Kernel::new("assemble", &[LEVEL, HALVES, KEEP_HALVES, source!("linalg/assemble.wgsl")]);
 
 /// Inverses of a level's diagonal blocks, and what rounding takes from its rows.
 pub static INVERT_DIAGONAL: Kernel = Kernel::new("invert_diagonal", &[LEVEL, HALVES, source!("linalg/diagonal.wgsl")]);
@@ -28,7 +29,7 @@ pub static GALERKIN_PRODUCT: Kernel =
 
 /// P^T (A P).
 pub static GALERKIN_COARSE: Kernel =
-    Kernel::new("galerkin_coarse", &[LEVEL, HALVES, GALERKIN, source!("linalg/galerkin_coarse.wgsl")]);
+    Kernel::new("galerkin_coarse", &[LEVEL, HALVES, KEEP_HALVES, GALERKIN, source!("linalg/galerkin_coarse.wgsl")]);
 
 /// What is fixed.
 pub static PRESCRIBE: Kernel = Kernel::new("prescribe", &[LEVEL, source!("linalg/prescribe.wgsl")]);
@@ -106,7 +107,7 @@ const TIE: ShaderSource = source!("linalg/tie.wgsl");
 const TIE_MET: ShaderSource = source!("linalg/tie_met.wgsl");
 
 /// Half of a pair's body: its finest matrix.
-pub static FOLD_MATRIX: Kernel = Kernel::new("fold_matrix", &[LEVEL, HALVES, source!("linalg/fold_matrix.wgsl")]);
+pub static FOLD_MATRIX: Kernel = Kernel::new("fold_matrix", &[LEVEL, HALVES, KEEP_HALVES, source!("linalg/fold_matrix.wgsl")]);
 
 /// Forces of half of the body.
 pub static FOLD: Kernel = Kernel::new("fold", &[LEVEL, RECORD, source!("linalg/fold.wgsl")]);

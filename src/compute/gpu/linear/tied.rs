@@ -267,12 +267,13 @@ impl TiedSolver {
         })
     }
 
-    /// Sends what ties the pairs of a dispatch, as far as the slots have not got it; whether there
-    /// is room for it.
+    /// Sends what ties the pairs of a dispatch, as far as the slots have not got it; for which of
+    /// them there is room. The others keep what was there, and nobody reads their solutions.
     ///
     /// # Errors
     /// The device's fault.
-    pub fn send(&self, context: &GpuContext, ties: &Ties<'_>) -> Result<bool, GpuError> {
+    pub fn send(&self, context: &GpuContext, ties: &Ties<'_>) -> Result<Vec<bool>, GpuError> {
+        let mut has_room = vec![true; ties.len()];
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         for (slot, tie) in ties.iter().enumerate() {
             if known[slot].as_ref().is_some_and(|known| Arc::ptr_eq(known, &tie.maps)) {
@@ -281,7 +282,8 @@ impl TiedSolver {
             let words = packed(&tie.maps);
             if words.len() > self.words || tie.maps.all().iter().any(|map| map.start.len() != self.points + 1) {
                 log::debug!("the maps of an interface take {} words where there are {}", words.len(), self.words);
-                return Ok(false);
+                has_room[slot] = false;
+                continue;
             }
             context.upload_at(&self.maps, slot * self.words, &words)?;
             known[slot] = Some(tie.maps.clone());
@@ -290,7 +292,7 @@ impl TiedSolver {
         let halves = ties.iter().flat_map(|tie| &tie.halves);
         let fixed: Vec<u32> = halves.flat_map(|half| half.as_chunks::<3>().0.iter().map(bits)).collect();
         context.upload_at(&self.half.levels[0].fixed, 0, &fixed)?;
-        Ok(true)
+        Ok(has_room)
     }
 
     /// Appends what makes the halves' hierarchies from the tangents.
