@@ -42,6 +42,8 @@ pub struct Measured {
     pub friction_fall: f64,
     /// |work of the plate - stored - dissipated| at the end over the largest work on the way.
     pub energy_gap: f64,
+    /// The same on a finer mesh, run where it is above `GREATEST_ENERGY_GAP`.
+    pub finer_energy_gap: Option<f64>,
     /// Largest |F_N - held|/held of the rows that hold the normal force.
     pub held_gap: Option<f64>,
     pub seconds: f64,
@@ -52,6 +54,14 @@ pub struct Measured {
     /// What the case is.
     pub what: String,
 }
+
+/// Most of the energy that may be missing or too much.
+const GREATEST_ENERGY_GAP: f64 = 0.05;
+/// An account that does not close has to close on a mesh with so many elements for each: weights of
+/// a contact's points change as coarse surfaces plough through each other, and their forces do work
+/// by that. Case 21 of seed 7 is 5.2 % off on 4 elements and 3.5 on 6; with four times the steps
+/// 5.4.
+const FINER: [usize; 2] = [3, 2];
 
 /// Forces that are rounding, over E R^2: where the bodies have parted there are no others.
 const ROUNDING: f64 = 1e-14;
@@ -114,8 +124,20 @@ impl Observer for Watch {
     }
 }
 
-/// Runs case `index` of `seed`.
+/// Runs case `index` of `seed`; where its account of energy does not close, on a finer mesh too.
 pub fn measure(seed: u64, index: usize, elements: Elements, against: Against) -> Measured {
+    let mut measured = measure_on(seed, index, elements, against);
+    if measured.energy_gap > GREATEST_ENERGY_GAP {
+        let inside = elements.inside * FINER[0] / FINER[1];
+        let elements = Elements { inside, at_surface: inside * (elements.at_surface / elements.inside) };
+        let finer = measure_on(seed, index, elements, against);
+        measured.seconds += finer.seconds;
+        measured.finer_energy_gap = Some(if finer.ending == "done" { finer.energy_gap } else { f64::NAN });
+    }
+    measured
+}
+
+fn measure_on(seed: u64, index: usize, elements: Elements, against: Against) -> Measured {
     let text = case_text(seed, index, elements, against);
     let mut measured = Measured { seed, index, on_plane: against == Against::Plane, ..Measured::default() };
     let begun = Instant::now();
@@ -238,7 +260,12 @@ impl Measured {
             .or_else(|| beyond("a point's force outside of Coulomb's cone", self.worst_point, 1e-3))
             .or_else(|| beyond("F_N off what is held", self.held_gap, held))
             .or_else(|| beyond("work of friction that comes back", Some(self.friction_fall), 1e-4))
-            .or_else(|| beyond("work that is neither stored nor dissipated", Some(self.energy_gap), 0.05))
+            .or_else(|| beyond("work that is neither stored nor dissipated", Some(self.energy()), GREATEST_ENERGY_GAP))
+    }
+
+    /// What is missing in the account of energy; on a finer mesh, where it is too much.
+    fn energy(&self) -> f64 {
+        self.finer_energy_gap.unwrap_or(self.energy_gap)
     }
 
     /// Iterations a step.
@@ -253,10 +280,11 @@ impl fmt::Display for Measured {
         let point = self.worst_point.map_or_else(|| "-".to_owned(), |x| format!("{x:.1e}"));
         let held = self.held_gap.map_or_else(|| "-".to_owned(), |x| format!("{x:.1e}"));
         let wrong = self.wrong().map_or(String::new(), |what| format!(" WRONG: {what}"));
+        let finer = self.finer_energy_gap.map_or(String::new(), |gap| format!(" [energy on a finer mesh: {gap:.1e}]"));
         let scout = self.scout_failure.as_ref().map_or(String::new(), |reason| format!(" [scout: {reason}]"));
         write!(
             f,
-            "{:>5} {:>6} {:>5} {:>7.2} {:>4} {:>7} {:>6} {:>6} {:>11} {:>11} {:>9} {:>8.1e} {:>10.1e} {:>7.2} {:>6.2}  {}{scout}{wrong}; {}",
+            "{:>5} {:>6} {:>5} {:>7.2} {:>4} {:>7} {:>6} {:>6} {:>11} {:>11} {:>9} {:>8.1e} {:>10.1e} {:>7.2} {:>6.2}  {}{scout}{finer}{wrong}; {}",
             self.index,
             self.steps,
             self.iterations,
