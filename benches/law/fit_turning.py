@@ -114,10 +114,12 @@ def headers(folder):
     levers = re.search(r"LEVERS: \[f64; SLIDERS\] = \[(.*?)\]", source, re.S).group(1)
     numbers |= {"LEVERS": levers.strip().rstrip(","), "VERSION": "fitted"}
     numbers |= {name.upper(): f"asperity_fit[{i}]" for i, name in enumerate(CONSTANTS)}
-    for name in "asperity_contact.h", "asperity_turning.h":
-        text = re.sub(r"@(\w+)@", lambda found: numbers[found.group(1)], (LAW / "export" / name).read_text())
-        text = f"extern double asperity_fit[{len(CONSTANTS)}];\n" + text
-        (folder / name).write_text(text)
+    export = LAW / "export"
+    names = re.findall(r"^#define (\w+) ", (export / "asperity_wide_names.h").read_text(), re.M)
+    numbers["WIDE_END"] = "\n".join(f"#undef {name}" for name in names)
+    for header in export.glob("*.h"):
+        text = re.sub(r"@(\w+)@", lambda found: numbers[found.group(1)], header.read_text())
+        (folder / header.name).write_text(f"extern double asperity_fit[{len(CONSTANTS)}];\n" + text)
 
 
 class Driver:
