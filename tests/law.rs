@@ -3,6 +3,8 @@
 
 #[path = "law/interpolated.rs"]
 mod interpolated;
+#[path = "law/presses.rs"]
+mod presses;
 #[path = "law/synthetic.rs"]
 mod synthetic;
 #[path = "law/unseen.rs"]

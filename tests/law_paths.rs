@@ -17,9 +17,9 @@ use std::process::Command;
 
 use asperity::case::Case;
 use asperity::contact_law::path::{drive, drive_in_the_plane};
-use asperity::contact_law::{Centres, ContactParameters};
+use asperity::contact_law::{Centres, ContactParameters, POINTS};
 use asperity::law::LawFile;
-use asperity::law::check::AIMS;
+use asperity::law::check::{AIMS, Ranges, drawn};
 use asperity::law::export::{Language, law_files};
 use contacts::{INCREMENTS, NAMES, folder, law};
 use programs::has;
@@ -29,7 +29,7 @@ const WITHIN: usize = 79;
 
 /// Greatest root mean square error of F_T and of F_N of any path, and of F_T over all of them: what
 /// they are, rounded up. They may only fall.
-const GREATEST: [f64; 3] = [0.291, 0.082, 0.047];
+const GREATEST: [f64; 3] = [0.194, 0.071, 0.038];
 
 /// One simulated path: places and forces.
 type Rows = Vec<[f64; 4]>;
@@ -81,12 +81,47 @@ fn the_update_follows_the_simulated_paths() {
     assert!(greatest[0] <= GREATEST[0] && greatest[1] <= GREATEST[1] && all <= GREATEST[2], "{greatest:?} {all}");
 }
 
+/// Greatest error of F_T and of F_N along a first shear against the law's own curves, over mu
+/// F_N_slip and F_N0, of the contacts of two seeds: what they are, rounded up.
+const FIRST_SHEAR: [f64; 2] = [0.08, 0.06];
+
+/// A first shear at constant h is that of the law: also of contacts that shear costs F_N though
+/// they recover nearly all of their indentation.
+#[test]
+fn a_first_shear_is_that_of_the_law() {
+    let (law, base) = (LawFile::built_in().unwrap(), path_of("", &[]));
+    let mut report = String::new();
+    let mut greatest = [0.0f64; 2];
+    for (seed, number) in [1, 2].into_iter().flat_map(|seed| (0..18).map(move |number| (seed, number))) {
+        let case = drawn(&base, &Ranges::default(), seed, number);
+        let parameters = law.contact_parameters(&case).unwrap();
+        let (h, mu) = (case.greatest_indentation(), parameters.first_loading().friction);
+        let virgin = parameters.virgin(h);
+        let point = &virgin.point;
+        let press = (1..=20).map(|i| [h * f64::from(i) / 20.0, 0.0]);
+        let shear = (1..=POINTS).map(|j| [h, point.delta_t_end * (j as f64 / POINTS as f64).powi(2)]);
+        let forces = drive(&parameters, &press.chain(shear).collect::<Vec<_>>(), 16);
+        let mut off = [0.0f64; 2];
+        for (j, [f_n, f_t]) in forces[20..].iter().enumerate() {
+            let given_t = mu * point.f_n_slip * virgin.shapes[0][j];
+            let given_n = point.f_n0 - (point.f_n0 - point.f_n_slip) * virgin.shapes[1][j];
+            let found = [(f_t - given_t).abs() / (mu * point.f_n_slip), (f_n - given_n).abs() / point.f_n0];
+            assert!(found.iter().all(|error| error.is_finite()), "seed {seed}, number {number}: {f_n} {f_t}");
+            off = [0, 1].map(|i| off[i].max(found[i]));
+        }
+        writeln!(report, "seed {seed}, number {number}: {off:.4?}").unwrap();
+        greatest = [0, 1].map(|i| greatest[i].max(off[i]));
+    }
+    println!("{report}{greatest:.4?}");
+    assert!(greatest[0] <= FIRST_SHEAR[0] && greatest[1] <= FIRST_SHEAR[1], "{report}{greatest:?}");
+}
+
 /// Paths in turning directions of the 36 that are within both aims, at least; the simulations, on
 /// 6 elements with 12 at the surface, are 2 to 4 % off themselves (`errors.csv` beside them).
-const WITHIN_TURNING: usize = 22;
+const WITHIN_TURNING: usize = 32;
 
 /// Greatest root mean square error of F_T, as a vector, and of F_N of any of them.
-const GREATEST_TURNING: [f64; 2] = [0.068, 0.031];
+const GREATEST_TURNING: [f64; 2] = [0.065, 0.036];
 
 /// Of a contact, the paths on which nothing twists or rolls: places (h, delta_T along x and y), F_N
 /// and F_T along x and y.

@@ -189,9 +189,9 @@ OF_LAWS = {
     "measure.FEWEST": (["src/law/table/measure.rs"], ["oblique"]),
     "RIPPLE": (["src/law/table/measure.rs"], ["oblique"]),
     "NOTHING": (["src/law/table/measure.rs"], ["oblique"]),
-    "RISING": (["src/law/table/series.rs"], ["composed", "weak on a flat", "weak flat"]),
-    "CONSTRAINT": (["src/law/table/series.rs"], ["composed", "weak on a flat", "weak flat"]),
-    "LEAST": (["src/law/table/series.rs"], ["weak on a flat", "weak flat"]),
+    "RISING": (["src/law/table/body.rs"], ["composed", "weak on a flat", "weak flat"]),
+    "CONSTRAINT": (["src/law/table/body.rs"], ["composed", "weak on a flat", "weak flat"]),
+    "LEAST": (["src/law/table/body.rs"], ["weak on a flat", "weak flat"]),
     "MOST_CREEP": (["src/law/table/series.rs"], ["composed", "weak on a flat", "weak flat"]),
     "NO_CREEP": (["src/law/table/series.rs"], ["composed", "weak on a flat", "weak flat"]),
 }

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """Scores the contact update, and fits its universal constants to simulated paths.
 
-    python3 benches/law/fit_element.py [--more RUN TABLE]... [--strict RUN TABLE]... [--vector] [--fit] [--rounds N] [--held-out]
-        [--write] [--detail]
+    python3 benches/law/fit_element.py [--more RUN TABLE]... [--strict RUN TABLE]... [--vector] [--random FOLDER]...
+        [--no-random] [--fit] [--evaluations N] [--held-out] [--write] [--detail]
 
-From the paths and tables of fixtures/paths, and runs with a table each besides, to src/contact_law/constants.rs in one command:
---fit --write. What is made small is the mean over all paths of e^8/(1 + e^8), where e = 1 is the aim of `asperity law check`, 5 % rms and
+From the paths and tables of fixtures/paths, its random paths by the built-in law, and runs with a table each besides, to
+src/contact_law/constants.rs in one command: --fit --write. What is made small is the mean over all paths of e^8/(1 + e^8), where e = 1 is the aim of `asperity law check`, 5 % rms and
 12 % at worst in F_T and F_N, of a --strict run a third of it: a path far outside of it pulls no more than one that may come in.
-Paths with a mesh error above 2.5 % (fixtures/paths/errors.csv) are told and not counted. Constants move in turns by steps that
-shrink. --held-out leaves out one material at a time, and scores it by the constants of the others. Builds benches/law_element.rs.
+Paths with a mesh error above 2.5 % (fixtures/paths/errors.csv) are told and not counted. Constants are searched for by CMA-ES
+(`pip install cma`), from those of the source. --held-out leaves out one material at a time, or one seed of the random paths, and
+scores it by the constants of the others. Builds benches/law_element.rs.
 """
 
 import argparse
@@ -59,8 +60,6 @@ CONSTANTS = {
     "widens": (0.0, 0.5),
     "stiffens": (0.0, 3.0),
     "narrows": (0.02, 10.0),
-    "coarse": (-0.2, 0.5),
-    "coarse_from": (2.0, 12.0),
     "bend": (0.0, 3.0),
     "bend_from": (0.0, 0.4),
 }
@@ -89,6 +88,21 @@ def more(run, table):
     return pathlib.Path(run).name, table, {"other runs": [[h, d, 0.0, f_n, f_t, 0.0] for h, d, f_n, f_t in rows]}
 
 
+def drawn(folder):
+    """(contact, contact, {path: rows}) of random paths as fixtures/paths/random has them, and the errors of their mesh in per cent."""
+    errors, found = {}, {}
+    with open(folder / "errors.csv", newline="") as table:
+        for row in csv.DictReader(table):
+            known = row["F_N"] != "unknown"
+            errors[row["seed"], row["number"]] = row["path"], max(float(row["F_N"]), float(row["F_T"])) if known else math.inf
+    with open(folder / "paths.csv", newline="") as table:
+        for row in csv.DictReader(table):
+            found.setdefault((row["seed"], row["number"]), []).append([float(row[name]) if name else 0.0 for name in ROW])
+    for (seed, number), rows in found.items():
+        path, error = errors[seed, number]
+        yield (f"seed {seed}, number {number}", f"drawn:{seed}:{number}", {path: rows}), error
+
+
 def vectors():
     """(contact, table, {path: rows}) of fixtures/paths/vector, as far as nothing twists or rolls."""
     for file in sorted((PATHS / "vector").glob("*-mu-*.csv")):
@@ -114,10 +128,13 @@ class Driver:
     """The update with its constants as variables, and all paths in it."""
 
     def __init__(self, args):
-        contacts = [(*contact, 1.0) for contact in protocol()]
+        contacts, mesh = [(*contact, 1.0) for contact in protocol()], {}
         contacts += [(*contact, 1.0) for contact in vectors()] if args.vector else []
+        for folder in [] if args.no_random else args.random or [PATHS / "random"]:
+            for contact, error in drawn(folder):
+                contacts.append((*contact, 1.0))
+                mesh[contact[0], next(iter(contact[2]))] = error
         contacts += [(*more(*pair), 1.0) for pair in args.more] + [(*more(*pair), STRICT) for pair in args.strict]
-        mesh = {}
         with open(PATHS / "errors.csv", newline="") as table:
             for row in csv.DictReader(table):
                 mesh[row["contact"], row["path"]] = max(float(row["F_N"]), float(row["F_T"]))
@@ -162,22 +179,30 @@ def cost(driver, scores, taken):
     return sum(x / (1 + x) for x in powers) / len(powers)
 
 
-def fit(driver, start, taken, rounds):
-    """Constants that make the cost of the paths `taken` small."""
+def fit(driver, start, taken, evaluations):
+    """Constants that make the cost of the paths `taken` small, by CMA-ES (Hansen, arXiv:1604.00772); the same each time."""
+    import cma  # https://pypi.org/project/cma, needs numpy
+
+    names = [name for name, (low, high) in CONSTANTS.items() if low < high]
+    trial = lambda x: {**start, **{name: float(f"{value:.5g}") for name, value in zip(names, x)}}
+    options = {
+        "bounds": [list(ends) for ends in zip(*(CONSTANTS[name] for name in names))],
+        "CMA_stds": [0.12 * max(abs(start[name]), 0.1) for name in names],
+        "popsize": 16,
+        "seed": 1,
+        "maxfevals": evaluations,
+        "verbose": -9,
+    }
     best, least = dict(start), cost(driver, driver.scores(start), taken)
-    steps = {name: 0.12 * max(abs(value), 0.1) for name, value in start.items()}
-    for number in range(rounds):
-        for name, (low, high) in CONSTANTS.items():
-            for sign in (1, -1):
-                trial = dict(best)
-                trial[name] = float(f"{min(max(best[name] + sign * steps[name], low), high):.5g}")
-                found = cost(driver, driver.scores(trial), taken) if trial != best else least
-                if found < least - 1e-7:
-                    best, least, steps[name] = trial, found, 1.4 * sign * steps[name]
-                    break
-            else:
-                steps[name] *= 0.5
-        print(f"round {number + 1}: {least:.4f}", file=sys.stderr, flush=True)
+    search = cma.CMAEvolutionStrategy([start[name] for name in names], 0.5, options)
+    while not search.stop():
+        asked = search.ask()
+        found = [cost(driver, driver.scores(trial(x)), taken) for x in asked]
+        search.tell(asked, found)
+        if min(found) < least:
+            best, least = trial(asked[found.index(min(found))]), min(found)
+        if search.countiter % 10 == 0:
+            print(f"{search.countevals} evaluations: {least:.4f}", file=sys.stderr, flush=True)
     return best, least
 
 
@@ -206,8 +231,10 @@ def main():
     parser.add_argument("--more", nargs=2, action="append", default=[], metavar=("RUN", "TABLE"))
     parser.add_argument("--strict", nargs=2, action="append", default=[], metavar=("RUN", "TABLE"))
     parser.add_argument("--vector", action="store_true", help="the paths of fixtures/paths/vector too, where nothing twists or rolls")
+    parser.add_argument("--random", type=pathlib.Path, action="append", help="folders of random paths in place of fixtures/paths/random")
+    parser.add_argument("--no-random", action="store_true", help="the nine contacts alone")
     parser.add_argument("--increments", type=int, default=8, help="between two simulated places")
-    parser.add_argument("--rounds", type=int, default=8)
+    parser.add_argument("--evaluations", type=int, default=1600, help="of all paths, for a fit; three in two seconds")
     parser.add_argument("--fit", action="store_true")
     parser.add_argument("--held-out", action="store_true")
     parser.add_argument("--write", action="store_true", help="the fitted constants into the source")
@@ -220,20 +247,20 @@ def main():
     told(driver, scores, args.detail)
     if args.held_out:
         held = [None] * len(driver.paths)
-        group = lambda name: name.split("-mu-")[0] if "-mu-" in name else "other"
+        group = lambda name: re.split("-mu-|, number", name)[0] if "-mu-" in name or ", number" in name else "other"
         for material in sorted({group(path[0]) for path in driver.paths}):
             taken = [group(path[0]) != material for path in driver.paths]
-            values, _ = fit(driver, start, taken, args.rounds)
+            values, _ = fit(driver, start, taken, args.evaluations)
             for index, one in enumerate(driver.scores(values)):
                 held[index] = held[index] if taken[index] else one
         print("each material by the constants of the others")
         told(driver, held, args.detail)
     if args.fit:
-        values, least = fit(driver, start, everything, args.rounds)
+        values, least = fit(driver, start, everything, args.evaluations)
         print(f"fitted, cost {least:.4f}")
         told(driver, driver.scores(values), args.detail)
         for name, value in values.items():
-            print(f"{name:14} {start[name]:9.4g} -> {value:.4g}")
+            print(f"{name:14} {start[name]:9.4g} -> {value:.5g}")
         if args.write:
             fitted.write(SOURCE, values)
 

@@ -75,6 +75,10 @@ pub struct FitArgs {
     /// from this interpolated law. `built-in` is the built-in law of a plane.
     #[arg(long, value_name = "LAW.json", requires = "interpolate")]
     pub reversal: Option<PathBuf>,
+    /// With --interpolate: DIR is a study of oblique presses. What they tell of how a contact
+    /// yields under F_T is added to this interpolated law.
+    #[arg(long, value_name = "LAW.json", requires = "interpolate", conflicts_with = "reversal")]
+    pub add_to: Option<PathBuf>,
     /// Print the law as JSON, as in DIR/law.json, instead of the tables.
     #[arg(long)]
     pub json: bool,
@@ -125,7 +129,8 @@ pub fn law(args: &LawArgs) -> Result<Exit, CliError> {
 fn fit_law(args: &FitArgs) -> Result<Exit, CliError> {
     let path = args.dir.join("law.json");
     let reversal_file = args.reversal.as_deref().unwrap_or(Path::new(BUILT_IN));
-    refuse_input(&path, &[Path::new(&args.prior), reversal_file])?;
+    let other = args.add_to.as_deref().unwrap_or(reversal_file);
+    refuse_input(&path, &[Path::new(&args.prior), other])?;
     refuse_foreign(&path)?;
     if args.interpolate {
         let reversal = match &args.reversal {
@@ -133,7 +138,10 @@ fn fit_law(args: &FitArgs) -> Result<Exit, CliError> {
             Some(path) => Some(Interpolated::read(path)?),
             None => None,
         };
-        let law = interpolated::fit(&args.dir, reversal.as_ref())?;
+        let law = match &args.add_to {
+            Some(path) => interpolated::with_yielding(Interpolated::read(path)?, &args.dir)?,
+            None => interpolated::fit(&args.dir, reversal.as_ref())?,
+        };
         law.write(&path)?;
         if args.json {
             print_json(&law)?;
@@ -170,6 +178,17 @@ fn summary_of_interpolation(law: &Interpolated) -> String {
         raw_sentence(source.raw)
     );
     text.push_str(&report::region_table("F_T of its peak, F_N of F_N0", &law.errors));
+    if let Some(yielding) = &law.yielding {
+        let [rms, most] = yielding.errors.map(|error| 100.0 * error);
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "\nc of {} oblique presses of {} materials, {} left out: ln c {rms:.1} % rms, at most {most:.0}, each material from the others",
+            yielding.cases,
+            yielding.materials,
+            yielding.left_out.len()
+        );
+    }
     text
 }
 

@@ -56,10 +56,6 @@ pub struct Constants {
     pub stiffens: f64,
     /// dh_p/D in which a press makes the contact as wide as F_N has it.
     pub narrows: f64,
-    /// Power of (h/D over the next) by which c of a coarse mesh is too small, times 1 - 0.1/mu.
-    pub coarse: f64,
-    /// The h/D at which it is right.
-    pub coarse_from: f64,
     /// How c changes with r, over what is recovered of h.
     pub bend: f64,
     /// The recovered share at which it does not.
@@ -69,38 +65,36 @@ pub struct Constants {
 impl Constants {
     /// Those of the program.
     pub const FITTED: Self = Self {
-        loss: 1.0287,
-        loss_small: 0.061897,
-        loss_most: 0.87951,
-        vertex_flow: 0.71054,
-        vertex_fades: 8.593,
-        vertex_length: 1.3489,
-        vertex_round: 0.30374,
-        beyond: 1.6588,
-        beyond_fades: 2.2251,
-        radial: 0.35424,
-        radial_fades: 2.0443,
-        radial_most: 0.48872,
-        first: 1.30866,
-        first_most: 0.6,
-        later: 0.17506,
-        later_mu: 0.6753,
-        unsheared: 3.3321,
-        forgets: 2.0,
+        loss: 0.94099,
+        loss_small: 0.031032,
+        loss_most: 0.83703,
+        vertex_flow: 0.90004,
+        vertex_fades: 9.5864,
+        vertex_length: 1.975,
+        vertex_round: 0.36212,
+        beyond: 1.9977,
+        beyond_fades: 2.5387,
+        radial: 0.48722,
+        radial_fades: 0.47145,
+        radial_most: 0.3699,
+        first: 1.4283,
+        first_most: 0.59668,
+        later: 0.177,
+        later_mu: 0.62554,
+        unsheared: 3.2156,
+        forgets: 0.055023,
         follows: 0.02,
-        released: 0.38137,
-        recovers: 415.85,
-        widens: 0.095977,
-        stiffens: 2.3201,
-        narrows: 0.035155,
-        coarse: 0.16448,
-        coarse_from: 4.1041,
-        bend: 0.14671,
-        bend_from: 0.24416,
+        released: 0.17362,
+        recovers: 356.81,
+        widens: 0.19498,
+        stiffens: 0.91365,
+        narrows: 0.020112,
+        bend: 1.0817,
+        bend_from: 0.16624,
     };
 
     /// How many they are.
-    pub const NUMBER: usize = 28;
+    pub const NUMBER: usize = 26;
 
     /// Of numbers in the order of the fields.
     pub fn from_array(values: [f64; Self::NUMBER]) -> Self {

@@ -71,22 +71,22 @@ pub struct TurningConstants {
 impl TurningConstants {
     /// Those of the program.
     pub const FITTED: Self = Self {
-        twist_yield: 0.8818,
-        twist_flow: 0.5902,
-        twist_worn: 3.0,
-        twist_most: 1.76,
-        roll_way: 0.1702,
-        roll_traction: 0.8476,
+        twist_yield: 0.8912,
+        twist_flow: 0.5656,
+        twist_worn: 2.694,
+        twist_most: 1.806,
+        roll_way: 0.1527,
+        roll_traction: 0.9312,
         roll_leaves: 1.222,
-        roll_moment: 0.5921,
-        roll_fades: 0.4401,
-        roll_stiff: 0.449,
-        roll_softens: 0.3884,
-        roll_loss: 0.4275,
-        roll_loss_fades: 1.468,
-        roll_slip: 1.221,
-        roll_press: 3.996,
-        roll_flow: 0.1802,
+        roll_moment: 0.5945,
+        roll_fades: 0.4661,
+        roll_stiff: 0.4491,
+        roll_softens: 0.3936,
+        roll_loss: 0.4158,
+        roll_loss_fades: 1.487,
+        roll_slip: 1.252,
+        roll_press: 4.501,
+        roll_flow: 0.2608,
     };
 
     /// How many they are.

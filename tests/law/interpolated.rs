@@ -6,7 +6,7 @@ use asperity::case::Case;
 use asperity::law::LawFile;
 use asperity::law::interpolated::{Interpolated, fit};
 
-use super::{asperity, synthetic, text};
+use super::{asperity, presses, synthetic, text};
 
 #[test]
 fn a_known_law_is_interpolated() {
@@ -45,6 +45,36 @@ fn a_known_law_is_interpolated() {
             assert!((ours_n - f_n).abs() < 0.06 * inputs.f_n, "{hardening} {friction} {h} at {d}: {ours_n} and {f_n}");
         }
     }
+}
+
+#[test]
+fn oblique_presses_tell_how_a_contact_yields() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [study, presses] = ["study", "presses"].map(|name| folder.path().join(name));
+    synthetic::write_study(&study, 0.0);
+    presses::write_presses(&presses);
+    let law = study.join("law.json");
+    asperity(&["law", "fit", text(&study), "--interpolate"]).code(0);
+    let printed = asperity(&["law", "fit", text(&presses), "--interpolate", "--add-to", text(&law)]).code(0);
+    let printed = String::from_utf8(printed.get_output().stdout.clone()).expect("text");
+    assert!(printed.contains("c of 48 oblique presses of 8 materials, 0 left out"), "{printed}");
+    let [without, with] = [law, presses.join("law.json")].map(|path| Interpolated::read(&path).expect("a law"));
+    assert_eq!(Interpolated { yielding: None, ..with.clone() }, without);
+    for (hardening, friction, h) in [(2, 0.15, 0.04), (5, 0.3, 0.03), (6, 0.4, 0.045)] {
+        let case = synthetic::case_text(&synthetic::hardenings()[hardening], friction, h);
+        let table = with.table(&Case::parse(&case, "case.toml", &[]).expect("a case")).expect("a table");
+        for level in table.levels.iter().filter(|level| level.h > 0.005) {
+            let (c, exact) = (level.yield_coefficient.expect("c"), presses::yield_coefficient(friction, level.h));
+            assert!((c / exact - 1.0).abs() < 0.1, "{hardening} {friction} at {}: {c} and {exact}", level.h);
+        }
+    }
+    // A study without presses says so, and a law is not written over.
+    let refused = asperity(&["law", "fit", text(&study), "--interpolate", "--add-to", text(&presses.join("law.json"))]).code(2);
+    let refused = String::from_utf8(refused.get_output().stderr.clone()).expect("text");
+    assert!(refused.contains("has 0 of them, of 0 materials, and needs 32 of 8"), "{refused}");
+    let refused = asperity(&["law", "fit", text(&presses), "--interpolate", "--add-to", text(&presses.join("law.json"))]).code(2);
+    let refused = String::from_utf8(refused.get_output().stderr.clone()).expect("text");
+    assert!(refused.contains("law.json"), "{refused}");
 }
 
 /// The overlap of two spheres falls as they pass each other, and the update takes that for an

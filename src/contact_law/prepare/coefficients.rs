@@ -8,8 +8,6 @@ use super::losses::steady_loss;
 
 /// Greatest r of an oblique press over mu.
 const MOST: f64 = 0.97;
-/// mu below which c of a coarse mesh is right.
-const SMOOTH: f64 = 0.1;
 /// Rows on either side over which the flow is a mean.
 const BESIDE: usize = 4;
 
@@ -38,14 +36,7 @@ impl Coefficients {
             let approach = row[RECOVERED] * whole;
             let dent = whole - approach;
             for _ in 0..6 {
-                // r that is small has an error of the mesh that the curves were made on.
-                let coarse = 1.0 - SMOOTH / mu;
-                let by_mesh = if coarse > 0.0 {
-                    (1.0 / row[RECOVERED] / constants.coarse_from).powf(constants.coarse * coarse)
-                } else {
-                    1.0
-                };
-                given[i] = first.virgin(h.clamp(shallow, deepest)).point.c * by_mesh;
+                given[i] = first.virgin(h.clamp(shallow, deepest)).point.c;
                 r = (((1.0 + slope * slope / given[i]).sqrt() - 1.0) / slope).min(MOST * mu);
                 loss = steady_loss(constants, given[i], r);
                 h = dent + approach / (1.0 + loss);

@@ -83,17 +83,22 @@ fn between(x: &[f64], y: &[f64], at: f64) -> f64 {
 fn hardened(table: &Table, h: f64, f_n: f64, most: f64, from: f64) -> f64 {
     root(
         |depth| {
-            let row = table.read(depth, SOLVED);
-            let (gamma, force) = (row.value[GAMMA], row.value[LN_FORCE]);
-            let e = (h - row.dent).max(0.0);
-            let width = 1.0 + row.wide * (force / f_n - 1.0);
             // The lesser of what F_N and what the yield factor lack.
-            let here = force * ((gamma - 1.0) * width.ln() + gamma * (e / row.approach).ln()).exp();
-            (f_n - here).max(force - most * f_n) / f_n
+            let force = table.read(depth, SOLVED).value[LN_FORCE];
+            (f_n - left_at(table, h, depth, f_n)).max(force - most * f_n) / f_n
         },
         from,
         from + h,
     )
+}
+
+/// F_N at the indentation h of a contact hardened to `depth`, where the shear leaves `f_n`.
+fn left_at(table: &Table, h: f64, depth: f64, f_n: f64) -> f64 {
+    let row = table.read(depth, SOLVED);
+    let (gamma, force) = (row.value[GAMMA], row.value[LN_FORCE]);
+    let e = (h - row.dent).max(0.0);
+    let width = 1.0 + row.wide * (force / f_n - 1.0);
+    force * ((gamma - 1.0) * width.ln() + gamma * (e / row.approach).ln()).exp()
 }
 
 /// Follows the shear with the sliders as the press has left them.
@@ -121,6 +126,9 @@ fn way(table: &Table, virgin: &Virgin, h: f64, mut driven: Driven) -> Way {
         let row = table.read(depth, COLUMNS);
         let (dent, force, stiff) = (row.dent, row.value[LN_FORCE], row.value[LN_STIFFNESS]);
         let q = (dent - way.dent[last]).max(0.0) * stiff / (force * constants.vertex_length * mu);
+        // What hardens to its bounds keeps more of F_N than the shear has, and F_T with it: their
+        // ratio stays that of the shear.
+        let f_n = f_n.max(left_at(table, h, depth, f_n));
         let d = at * virgin.point.delta_t_end;
         let slides = Slides {
             stiff,
@@ -167,7 +175,12 @@ pub(super) fn fill(virgin: &Virgin, table: &mut Table, level: usize, [c, measure
         let over = |y: &[f64]| between(&way.x, y, high) - between(&way.x, y, low);
         let (hardens, grows) = (over(&way.dent), over(&way.factor));
         let direction = between(&way.x, &way.along, here);
-        let lost = lesser(steady_loss(&constants, c, r), constants.loss_most * (between(&way.x, &way.factor, here) - 1.0));
+        let factor = |j: usize| between(&way.x, &way.factor, place(j) * end);
+        let mut lost = lesser(steady_loss(&constants, c, r), constants.loss_most * (factor(j) - 1.0));
+        if j > 0 {
+            // No more than the shear loses from place to place: A and B are its yield factor.
+            lost = lost.min(shape[LOST][j - 1] + factor(j) - factor(j - 1));
+        }
         // c rises with r where more is elastic, and falls where less is; and a steady press flows
         // no more than this shear.
         let bend = 1.0 + constants.bend * (recovered - constants.bend_from) * ((r / measured).min(2.0) - 1.0);

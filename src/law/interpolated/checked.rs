@@ -3,6 +3,7 @@
 use super::components::Components;
 use super::inputs::{INPUTS, NAMES};
 use super::model::{FORMAT, Interpolated, PROCESSES, VERSION};
+use super::process::Process;
 use crate::contact_law::Frame;
 use crate::law::bounds::{Checked, TOLD, ValueBounds};
 use crate::law::json::LawKind;
@@ -10,6 +11,8 @@ use crate::law::table::{Against, frame_of_the_centres};
 
 /// Means of inputs and outputs and the ends of their ranges, which are logarithms and shares.
 const VALUE: ValueBounds = ValueBounds { least: -1e3, most: 1e3 };
+/// ln c.
+const LOG_OF_C: ValueBounds = ValueBounds { least: -10.0, most: 10.0 };
 /// Deviations, of which 1e-12 stands for none.
 const DEVIATION: ValueBounds = ValueBounds { least: 1e-12, most: 1e3 };
 /// Inputs of a sample over their deviation.
@@ -39,6 +42,7 @@ impl LawKind for Interpolated {
         ELEMENTS.hold_one("source.elements_per_contact_radius", self.source.elements_per_contact_radius as f64)?;
         self.check_inputs()?;
         self.check_processes()?;
+        self.check_yielding()?;
         check_components("ratio", &self.ratio)?;
         check_components("normal", &self.normal)?;
         TOLD.hold_all("errors", &self.errors)?;
@@ -71,21 +75,33 @@ impl Interpolated {
         if count != PROCESSES {
             return Err(format!("processes has {count} of them, and there have to be {PROCESSES}"));
         }
-        for (i, process) in self.processes.iter().enumerate() {
-            VALUE.hold_one(format_args!("processes[{i}].mean"), process.mean)?;
-            DEVIATION.hold_one(format_args!("processes[{i}].deviation"), process.deviation)?;
-            LENGTH.hold(format_args!("processes[{i}].lengths"), &process.lengths)?;
-            VARIANCE.hold(format_args!("processes[{i}].variances"), &process.variances)?;
-            if process.weights.len() != samples {
-                let weights = process.weights.len();
-                return Err(format!(
-                    "processes[{i}].weights has {weights} numbers, and has to have {samples}, one for each sample"
-                ));
-            }
-            WEIGHT.hold(format_args!("processes[{i}].weights"), &process.weights)?;
-        }
-        Ok(())
+        let mut processes = self.processes.iter().enumerate();
+        processes.try_for_each(|(i, process)| check_process(&format!("processes[{i}]"), process, samples))
     }
+
+    fn check_yielding(&self) -> Checked {
+        let Some(yielding) = &self.yielding else { return Ok(()) };
+        if yielding.samples.is_empty() {
+            return Err("yielding.samples is empty, and has to have one at least".to_owned());
+        }
+        let mut places = yielding.samples.iter().enumerate();
+        places.try_for_each(|(i, place)| PLACE.hold(format_args!("yielding.samples[{i}]"), place))?;
+        LOG_OF_C.hold_one("yielding.process.mean", yielding.process.mean)?;
+        TOLD.hold("yielding.errors", &yielding.errors)?;
+        check_process("yielding.process", &yielding.process, yielding.samples.len())
+    }
+}
+
+fn check_process(key: &str, process: &Process, samples: usize) -> Checked {
+    VALUE.hold_one(format_args!("{key}.mean"), process.mean)?;
+    DEVIATION.hold_one(format_args!("{key}.deviation"), process.deviation)?;
+    LENGTH.hold(format_args!("{key}.lengths"), &process.lengths)?;
+    VARIANCE.hold(format_args!("{key}.variances"), &process.variances)?;
+    if process.weights.len() != samples {
+        let weights = process.weights.len();
+        return Err(format!("{key}.weights has {weights} numbers, and has to have {samples}, one for each sample"));
+    }
+    WEIGHT.hold(format_args!("{key}.weights"), &process.weights)
 }
 
 fn check_components(key: &str, components: &Components) -> Checked {

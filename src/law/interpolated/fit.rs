@@ -113,6 +113,7 @@ pub fn fit(dir: &Path, reversal: Option<&Interpolated>) -> Result<Interpolated, 
         normal,
         processes,
         samples: places,
+        yielding: None,
         pair: None,
     };
     let levels: Vec<Level> = samples
@@ -134,7 +135,7 @@ pub fn fit(dir: &Path, reversal: Option<&Interpolated>) -> Result<Interpolated, 
 }
 
 /// rms and greatest of some errors.
-fn both(errors: impl Iterator<Item = f64>) -> [f64; 2] {
+pub(super) fn both(errors: impl Iterator<Item = f64>) -> [f64; 2] {
     let (mut squares, mut greatest, mut count) = (0.0, 0.0f64, 0usize);
     for error in errors {
         squares += error * error;
@@ -235,6 +236,14 @@ fn unusable(case: &Case) -> Option<&'static str> {
     }
 }
 
+/// The number of a material among those that are known, which it joins.
+pub(super) fn material_number(materials: &mut Vec<Material>, own: Material) -> usize {
+    materials.iter().position(|known| *known == own).unwrap_or_else(|| {
+        materials.push(own);
+        materials.len() - 1
+    })
+}
+
 fn sample(
     case: &Case,
     directory: &OutputDirectory,
@@ -256,10 +265,7 @@ fn sample(
         }
     }
     let own = case.scaled().0.material;
-    let material = materials.iter().position(|known| *known == own).unwrap_or_else(|| {
-        materials.push(own);
-        materials.len() - 1
-    });
+    let material = material_number(materials, own);
     Ok(Some(FittedContact {
         material,
         sphere,

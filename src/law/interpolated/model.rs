@@ -8,12 +8,13 @@ use super::components::{COMPONENTS, Components};
 use super::inputs::{FRICTION, INPUTS, LAMBDA, POISSON, SIZE, inputs};
 use super::outputs::{NUMBERS, Outputs};
 use super::process::{InputPoint, Process};
+use super::yielding::Yielding;
 use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Opponent};
 use crate::contact_law::Frame;
 use crate::law::range::{Interval, MARGIN, OutOfRange, clamped};
 use crate::law::report::RegionError;
-use crate::law::table::{self, Against, Tabulated, equivalent};
+use crate::law::table::{self, Against, Level, Tabulated, equivalent};
 use crate::law::variables::{Body, yield_lambda};
 use crate::law::{LawError, json};
 
@@ -109,6 +110,9 @@ pub struct Interpolated {
     pub processes: Vec<Process>,
     /// The samples' inputs, less their mean, over their deviation.
     pub samples: Vec<InputPoint>,
+    /// c of the oblique press; without it the update takes that of the shear at constant h.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub yielding: Option<Yielding>,
     /// The law of two equal spheres, for any two bodies of one material and for the press of any
     /// others; without it all are put in series from spheres on a plane.
     #[serde(skip)]
@@ -177,9 +181,14 @@ impl Interpolated {
 
     /// What it tells of a contact.
     pub(super) fn outputs(&self, contact: &[f64; INPUTS]) -> Outputs {
-        let place = std::array::from_fn(|i| (contact[i] - self.inputs[i].mean) / self.inputs[i].deviation);
+        let place = self.place(contact);
         let values: Vec<f64> = self.processes.iter().map(|process| process.at(&self.samples, &place)).collect();
         self.outputs_of(&values)
+    }
+
+    /// The inputs of a contact less their mean, over their deviation.
+    pub(super) fn place(&self, contact: &[f64; INPUTS]) -> InputPoint {
+        std::array::from_fn(|i| (contact[i] - self.inputs[i].mean) / self.inputs[i].deviation)
     }
 
     /// The outputs that belong to the values of the functions.
@@ -206,8 +215,10 @@ impl Interpolated {
         let levels = table::depths(case)?
             .into_iter()
             .map(|h| {
-                let outputs = self.outputs(&inputs(&body, &sphere, friction(case), h));
-                outputs.level(&sphere, friction(case), h, keeps_its_force(&body, self.body))
+                let contact = inputs(&body, &sphere, friction(case), h);
+                let level = self.outputs(&contact).level(&sphere, friction(case), h, keeps_its_force(&body, self.body));
+                let yielding = self.yielding.as_ref().filter(|_| !body.is_elastic() && friction(case) > 0.0);
+                Level { yield_coefficient: yielding.map(|yielding| yielding.at(&self.place(&contact))), ..level }
             })
             .collect();
         Tabulated::interpolated(case, levels, self.source.elements_per_contact_radius)

@@ -39,6 +39,15 @@ pub(super) const NEARLY_SLIPPING: f64 = SLIP_DISPLACEMENT_RATIO;
 /// A depth nearer than this share of its size to first yield needs no Hertz contact below it.
 const NEAR: f64 = 1.3;
 
+/// Elements along the contact radius of an oblique press over those of the other cases: its F_T
+/// has more to go to the limit of fine meshes than that of a shear. On 5 elements c is up to 51 %
+/// off, on 8 up to 9 % (benches/law/element.md, "c of an oblique press").
+const OBLIQUE_FINER: f64 = 1.6;
+/// The shallower press is deeper than so many times the depth at first yield.
+const YIELDS: f64 = 4.0;
+/// Depths of the oblique presses over the greatest; each tells of those down to its fourth part.
+const OBLIQUE_DEPTHS: [f64; 2] = [0.125, 1.0];
+
 /// A table and what it was made from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Built {
@@ -82,27 +91,39 @@ pub fn depths(case: &Case) -> Result<Vec<f64>, LawError> {
     Ok((0..=last).map(|i| first * (deepest / first).powf(i as f64 / last as f64)).collect())
 }
 
-/// delta_T over h of the oblique press that tells how the contact yields under F_T. `None` where
-/// nothing slips or yields.
-fn oblique_slope(case: &Case) -> Option<f64> {
-    match case.contact.friction {
-        Friction::Coefficient(mu) if mu > 0.0 => indentation_at_first_yield(case).ok()?.map(|_| measured_slope(mu)),
-        _ => None,
+/// h and delta_T, over R, of the oblique presses up to `deepest` that tell how the contact yields
+/// under F_T. None where nothing slips or yields.
+fn oblique_presses(case: &Case, deepest: f64) -> Vec<[f64; 2]> {
+    let Friction::Coefficient(mu) = case.contact.friction else { return Vec::new() };
+    match indentation_at_first_yield(case) {
+        Ok(Some(first)) if mu > 0.0 => OBLIQUE_DEPTHS
+            .map(|share| share * deepest)
+            .into_iter()
+            .filter(|&h| h == deepest || h * case.sphere.radius > YIELDS * first)
+            .map(|h| [h, measured_slope(mu) * h])
+            .collect(),
+        _ => Vec::new(),
     }
 }
 
 /// The study that [`build`] makes a table of, as a study file: [`case_of`] with the depths, over R,
-/// as its list, and at its end one oblique press to the last of them.
+/// as its list, and at its end oblique presses up to the last of them, on finer meshes.
 pub fn study_text(case: &Case, elements: usize, depths: &[f64]) -> String {
     let radius = case.sphere.radius;
     let base = toml::Value::String(String::new());
     let base = toml::Table::try_from(case_of(case, elements)).map_or(base, toml::Value::Table);
     let one = |key: &str, value: toml::Value| toml::Value::Table([(key.to_owned(), value)].into_iter().collect());
     let mut list: Vec<toml::Value> = depths.iter().map(|h| one("path.0.indentation", toml::Value::Float(h * radius))).collect();
-    if let (Some(slope), Some(deepest)) = (oblique_slope(case), depths.last()) {
-        let both = [("indentation", deepest * radius), ("shear", slope * deepest * radius)];
+    let elements = (OBLIQUE_FINER * elements as f64).ceil() as i64;
+    for [h, shear] in depths.last().map_or_else(Vec::new, |&deepest| oblique_presses(case, deepest)) {
+        let both = [("indentation", h * radius), ("shear", shear * radius)];
         let both = both.into_iter().map(|(key, value)| (key.to_owned(), toml::Value::Float(value))).collect();
-        list.push(one("path", toml::Value::Array(vec![toml::Value::Table(both)])));
+        let table = [
+            ("path".to_owned(), toml::Value::Array(vec![toml::Value::Table(both)])),
+            ("mesh.elements_per_contact_radius".to_owned(), toml::Value::Integer(elements)),
+            ("mesh.surface_elements_per_contact_radius".to_owned(), toml::Value::Integer(2 * elements)),
+        ];
+        list.push(toml::Value::Table(table.into_iter().collect()));
     }
     let mut study = toml::Table::new();
     study.insert("base".to_owned(), base);
@@ -130,8 +151,12 @@ pub fn build(dir: &Path, case: &Case, elements: usize) -> Result<Built, LawError
     }
     let mut table = table(case, &all, elements)?;
     table.errors.clone_from(&coarse.errors);
-    for level in &mut table.levels {
-        level.yield_coefficient = straight(&yielding, level.h.ln());
+    // Where the deep press did not end, the shallow one says nothing of most depths.
+    let deepest = table.levels.last().map_or(0.0, |level| level.h).ln();
+    if yielding.last().is_some_and(|[at, _]| *at > deepest - std::f64::consts::LN_2) {
+        for level in &mut table.levels {
+            level.yield_coefficient = straight(&yielding, level.h.ln());
+        }
     }
     Ok(Built { table, coarse, measured: all, missing })
 }

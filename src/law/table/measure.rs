@@ -116,6 +116,9 @@ impl Measured {
     }
 }
 
+/// What is less deep than this share of an oblique press has too few elements in its contact: half
+/// as many along its radius as the last depth.
+const RESOLVED: f64 = 0.25;
 /// Share of mu above which F_T/F_N of an oblique press says that it slides, and not how it yields.
 /// Half and twice of this and of the numbers below: `benches/constants`.
 const SLIDING: f64 = 0.97;
@@ -126,13 +129,28 @@ const RIPPLE: usize = 2;
 /// Share of mu below which F_T/F_N is the tolerance's.
 const NOTHING: f64 = 0.01;
 
-/// ln h and c of the yield curve along an oblique press, increasing in h: steady flow has
-/// d(delta_T)/dh = 2 c r/(1 - c r^2), r = F_T/F_N.
+/// Whether a press that begins a case slides at its end: then its c is a bound.
+pub fn slides_to_its_end(case: &Case, history: &[StepRecord]) -> bool {
+    let Friction::Coefficient(mu) = case.contact.friction else { return false };
+    pressed(case, history).last().is_some_and(|row| row.f_t > SLIDING * mu * row.f_n)
+}
+
+/// The steps of the press that begins a case, at the limit of fine meshes where that is known.
+fn pressed(case: &Case, history: &[StepRecord]) -> Vec<StepRecord> {
+    let press: Vec<StepRecord> = history.iter().filter(|row| row.segment == 0).copied().collect();
+    turned(Centres::of(case), &at_the_limit(&press))
+}
+
+/// ln h and c of the yield curve along the oblique press that begins a case, increasing in h:
+/// steady flow has d(delta_T)/dh = 2 c r/(1 - c r^2), r = F_T/F_N. Where all of it slides, of the
+/// last steps.
 pub fn yielding(case: &Case, history: &[StepRecord]) -> Vec<[f64; 2]> {
     let Friction::Coefficient(mu) = case.contact.friction else { return Vec::new() };
-    let rows: Vec<[f64; 3]> = turned(Centres::of(case), history)
+    let rows = pressed(case, history);
+    let deepest = rows.iter().map(|row| row.h).fold(0.0, f64::max);
+    let rows: Vec<[f64; 3]> = rows
         .iter()
-        .filter(|row| row.h > 0.0 && row.f_n > 0.0)
+        .filter(|row| row.h > 0.0 && row.h >= (1.0 - 1e-9) * RESOLVED * deepest && row.f_n > 0.0)
         .map(|row| [(row.h / case.sphere.radius).ln(), row.delta_t / row.h, row.f_t / row.f_n])
         .collect();
     let sticks = rows.iter().rposition(|row| row[2] > SLIDING * mu).map_or(0, |i| i + 1);
@@ -152,7 +170,7 @@ pub fn yielding(case: &Case, history: &[StepRecord]) -> Vec<[f64; 2]> {
 pub struct MeasuredStudy {
     /// The depths that are there, increasing.
     pub depths: Vec<Measured>,
-    /// [`yielding`] of its oblique press; empty without one.
+    /// [`yielding`] of its oblique presses, increasing in h; empty without one.
     pub yielding: Vec<[f64; 2]>,
     /// What is not there, with the reason.
     pub missing: Vec<Missing>,
@@ -173,7 +191,7 @@ pub fn measured(dir: &Path) -> Result<MeasuredStudy, LawError> {
         let case = directory.load_case()?;
         let history = read_history(&directory.history())?;
         if let Some(Segment::Oblique { .. }) = case.path.first() {
-            oblique = yielding(&case, &history);
+            oblique.extend(yielding(&case, &history));
             continue;
         }
         match Measured::of(&case, &history) {
@@ -182,6 +200,7 @@ pub fn measured(dir: &Path) -> Result<MeasuredStudy, LawError> {
         }
     }
     all.sort_by(|a, b| a.h.total_cmp(&b.h));
+    oblique.sort_by(|a, b| a[0].total_cmp(&b[0]));
     Ok(MeasuredStudy { depths: all, yielding: oblique, missing })
 }
 

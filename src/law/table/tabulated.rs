@@ -211,9 +211,7 @@ impl Tabulated {
 
     /// c of the yield curve at an indentation, straight over ln h between the levels that have one.
     fn yield_coefficient(&self, h: f64) -> Option<f64> {
-        let known: Vec<[f64; 2]> =
-            self.levels.iter().filter_map(|level| level.yield_coefficient.map(|c| [level.h.ln(), c])).collect();
-        straight(&known, h.ln())
+        straight(&yielding_of(&self.levels), h.ln())
     }
 
     /// A case of its material and friction that is pressed to its end.
@@ -231,8 +229,13 @@ impl Tabulated {
     }
 }
 
+/// ln h and c of the levels that have one.
+pub(super) fn yielding_of(levels: &[Level]) -> Vec<[f64; 2]> {
+    levels.iter().filter_map(|level| level.yield_coefficient.map(|c| [level.h.ln(), c])).collect()
+}
+
 /// What points (x, y), increasing in x, have at `x`: straight between them, and flat beyond.
-pub(super) fn straight(points: &[[f64; 2]], x: f64) -> Option<f64> {
+pub(in crate::law) fn straight(points: &[[f64; 2]], x: f64) -> Option<f64> {
     let after = points.partition_point(|point| point[0] <= x);
     let (Some(before), Some(after)) = (after.checked_sub(1).map(|i| points[i]), points.get(after)) else {
         return if after == 0 { points.first() } else { points.last() }.map(|point| point[1]);

@@ -1,6 +1,7 @@
 use super::*;
 use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
 use crate::analytical::hertz;
+use crate::case::Material;
 use crate::contact_law::Frame;
 use crate::contact_law::path::{drive, drive_centres};
 
@@ -116,6 +117,25 @@ fn two_bodies_that_hardly_differ_are_as_two_alike() {
         let places: Vec<[f64; 2]> = [0.0, 0.02, 0.1, 0.2, 0.4, 0.9].map(|x| [level.h, x * end]).to_vec();
         agree(&drive(&one, &places, 20), &drive(&other, &places, 20), 8e-3 * point.f_n0);
     }
+}
+
+/// c of an oblique press: of one body twice its own; of a pair without one of a body none; of a
+/// body beside a stiffer one that hardly gives way nearly that of the first.
+#[test]
+fn how_bodies_yield_under_a_shear_is_in_series_too() {
+    let (steel, hard) = (material(200e3, 0.3, IDEAL), material(2e7, 0.3, ELASTIC));
+    let mut known = table(&steel, plastic);
+    known.levels.iter_mut().for_each(|level| level.yield_coefficient = Some(4.0));
+    let alike = case(1.0, &steel, "opponent = { radius = 2.0 }", 0.02);
+    let composed = compose(&alike, [&known, &known]).unwrap();
+    assert!(composed.levels.iter().all(|level| level.yield_coefficient.is_some_and(|c| (c / 4.0 - 1.0).abs() < 1e-9)));
+    let unknown = table(&steel, plastic);
+    let composed = compose(&alike, [&known, &unknown]).unwrap();
+    assert!(composed.levels.iter().all(|level| level.yield_coefficient.is_none()));
+    let stiff = case(1.0, &steel, &format!("opponent = {{ flat = true, material = {hard} }}"), 0.01);
+    let composed = compose(&stiff, [&known, &table(&hard, elastic)]).unwrap();
+    let deepest = composed.levels.last().and_then(|level| level.yield_coefficient);
+    assert!(deepest.is_some_and(|c| (c / 4.0 - 1.0).abs() < 0.05), "{deepest:?}");
 }
 
 #[test]
