@@ -183,7 +183,8 @@ fn summary_of_interpolation(law: &Interpolated) -> String {
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
-            "\nc of {} oblique presses of {} materials, {} left out: ln c {rms:.1} % rms, at most {most:.0}, each material from the others",
+            "\nc of {} oblique presses of {} materials, {} left out: ln c {rms:.1} % rms, at most {most:.0}, \
+             each material from the others",
             yielding.cases,
             yielding.materials,
             yielding.left_out.len()

@@ -505,7 +505,7 @@ fn what_is_no_number_gives_none_and_leaves_the_contact_as_it_was() {
 fn an_increment_beyond_all_bounds_is_full_slip_in_its_direction() {
     for p in pairs() {
         let (state, _) = pressed(&p, 0.02, 20);
-        // F_T comes to mu F_N as the flow does, by 4e-8 of it at 5 R.
+        // At 5 R, F_T still lacks 4e-8 of mu F_N.
         let (_, far) = p.update(&state, 0.02, [300.0, 400.0]);
         for size in [1e100, 1e153, 1e160, 1e200, 3e307] {
             let (next, out) = p.update(&state, 0.02, [0.6 * size, 0.8 * size]);

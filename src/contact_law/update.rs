@@ -536,7 +536,7 @@ impl Step<'_> {
     /// What releases took of the yield force before the one that a step has left over, and the
     /// share of F_N that is still released: so a next step that goes nowhere finds the same.
     fn left_released(&self, o: &Guess, y: f64) -> [f64; 2] {
-        // A last guess may have come off: a shear that hardens until nothing of h is elastic.
+        // The last guess may be without contact: a shear may harden until nothing of h is elastic.
         if !(o.approach > 0.0) {
             return [self.state.softened, 1.0];
         }

@@ -564,7 +564,7 @@ ASPERITY_FN asperity_m asperity_move(
         guess = 1.0 - o->rho / (1.0 - softening * released * released);
         load = asperity_choose(touches, asperity_choose(guess > 0.0, guess, none), load);
     }
-    touches = o->e > 0.0; /* a last guess may have come off: a shear that hardens until nothing of h is elastic */
+    touches = o->e > 0.0; /* the last guess may be without contact: a shear may harden until nothing of h is elastic */
     load = asperity_choose(touches, load, s->softened);
     released = asperity_choose(touches, released, asperity_all(1.0));
     asperity_keep(p, o, flows, flows, y, load, released, next);

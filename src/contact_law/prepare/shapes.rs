@@ -2,8 +2,8 @@
 
 use super::super::state::ContactState;
 use super::super::table::{
-    COLUMNS, FIRST_N, FLOW, GAMMA, LN_FORCE, LN_STIFFNESS, LOST, MOBILISED, PLACES, SOLVED, SUDDEN, Table, UNSHEARED_N, VERTEX,
-    exponent, place,
+    COLUMNS, FIRST_N, FLOW, GAMMA, LN_FORCE, LN_STIFFNESS, LOST, MOBILISED, PLACES, Row, SOLVED, SUDDEN, Table, UNSHEARED_N,
+    VERTEX, exponent, place,
 };
 use super::super::virgin::Virgin;
 use super::drive::{Driven, Slides, root};
@@ -84,17 +84,17 @@ fn hardened(table: &Table, h: f64, f_n: f64, most: f64, from: f64) -> f64 {
     root(
         |depth| {
             // The lesser of what F_N and what the yield factor lack.
-            let force = table.read(depth, SOLVED).value[LN_FORCE];
-            (f_n - left_at(table, h, depth, f_n)).max(force - most * f_n) / f_n
+            let row = table.read(depth, SOLVED);
+            (f_n - left_at(&row, h, f_n)).max(row.value[LN_FORCE] - most * f_n) / f_n
         },
         from,
         from + h,
     )
 }
 
-/// F_N at the indentation h of a contact hardened to `depth`, where the shear leaves `f_n`.
-fn left_at(table: &Table, h: f64, depth: f64, f_n: f64) -> f64 {
-    let row = table.read(depth, SOLVED);
+/// F_N at the indentation h of a contact hardened to the depth of `row`, where the shear leaves
+/// `f_n`.
+fn left_at(row: &Row, h: f64, f_n: f64) -> f64 {
     let (gamma, force) = (row.value[GAMMA], row.value[LN_FORCE]);
     let e = (h - row.dent).max(0.0);
     let width = 1.0 + row.wide * (force / f_n - 1.0);
@@ -128,7 +128,7 @@ fn way(table: &Table, virgin: &Virgin, h: f64, mut driven: Driven) -> Way {
         let q = (dent - way.dent[last]).max(0.0) * stiff / (force * constants.vertex_length * mu);
         // What hardens to its bounds keeps more of F_N than the shear has, and F_T with it: their
         // ratio stays that of the shear.
-        let f_n = f_n.max(left_at(table, h, depth, f_n));
+        let f_n = f_n.max(left_at(&row, h, f_n));
         let d = at * virgin.point.delta_t_end;
         let slides = Slides {
             stiff,
