@@ -23,13 +23,13 @@ fn meshed(law: &str) -> String {
     )
 }
 
-/// A pair pressed and moved, in the units of E = 1000 and R = 1.
+/// A pair pressed and moved on half of the default mesh, in the units of E = 1000 and R = 1.
 fn text(law: &str, opponent: &str, path: &[&str]) -> String {
     let segments: String = path.iter().map(|segment| format!("[[path]]\n{segment}\n")).collect();
     format!(
         "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 1000.0\npoissons_ratio = 0.3\n[material.hardening]\n{law}\n\
-         [contact]\nfriction = 0.3\n[opponent]\n{opponent}\n[mesh]\nelements_per_contact_radius = 5\n[solver]\n\
-         error_estimate = false\n{segments}"
+         [contact]\nfriction = 0.3\n[opponent]\n{opponent}\n[mesh]\nelements_per_contact_radius = 5\n\
+         surface_elements_per_contact_radius = 10\n[solver]\nerror_estimate = false\n{segments}"
     )
 }
 
@@ -76,7 +76,7 @@ fn the_path_decides_what_is_meshed() {
 /// the pressure is beside the line of centres.
 #[test]
 fn an_image_has_the_forces_of_two_bodies() {
-    let tight = ["solver.tolerance=1e-6", "mesh.surface_elements_per_contact_radius=10"];
+    let tight = ["solver.tolerance=1e-6"];
     for moved in ["shear = [0.002, 0.003]", "twist = 0.04", "twist = 0.03\nshear = [0.001, 0.0]"] {
         let path = ["indentation = 0.02", moved];
         let (image, two) = (rows(&text(IDEAL, IMAGE, &path), &tight), rows(&text(IDEAL, &meshed(IDEAL), &path), &tight));
@@ -122,8 +122,9 @@ fn a_roll_about_x_is_that_of_two_bodies_seen_from_their_centres() {
     for (what, a, b) in [("F_N", one.f_n, f_n), ("F_T,y", one.f_t_y, across)] {
         assert!((a / presses[0] - b / presses[1]).abs() < 0.005, "{what} {a} {b} of {presses:?}");
     }
+    // 1.6 % off, 0.8 on 8 elements and 16: the other body's nodes lie elsewhere.
     let moments = [one.m_roll_x / presses[0], other.m_roll_x / presses[1]];
-    assert!((moments[0] / moments[1] - 1.0).abs() < 0.01, "{moments:?}");
+    assert!((moments[0] / moments[1] - 1.0).abs() < 0.02, "{moments:?}");
 }
 
 /// On half of the mesh by the half turn, and on all of it by the inversion: within 2.5e-4 of the
@@ -145,11 +146,11 @@ fn along_x_both_images_say_the_same() {
 }
 
 /// The mesh lies along the first shear, so that nothing is across; after a first shear along x
-/// there is the mesh's own anisotropy, 0.2 %.
+/// there is the mesh's own anisotropy: 0.7 % of F_T, and nothing to speak of across.
 #[test]
 fn turned_axes_have_the_forces_of_the_x_axis() {
     turned_axes(&["indentation = 0.02"], 1e-4);
-    turned_axes(&["indentation = 0.02", "shear = 1e-9"], 0.005);
+    turned_axes(&["indentation = 0.02", "shear = 1e-9"], 0.003);
 }
 
 fn turned_axes(first: &[&str], most_across: f64) {
@@ -166,8 +167,8 @@ fn turned_axes(first: &[&str], most_across: f64) {
         let (sin, cos) = direction.to_radians().sin_cos();
         let (one, other) = (end(&along), end(&turned));
         let (f_t, across) = (other.f_t * cos + other.f_t_y * sin, other.f_t_y * cos - other.f_t * sin);
-        assert!((one.f_n - other.f_n).abs() < 0.005 * press, "{direction}: F_N {} for {}", other.f_n, one.f_n);
-        assert!((one.f_t - f_t).abs() < 0.005 * peak, "{direction}: F_T {f_t} for {}", one.f_t);
+        assert!((one.f_n - other.f_n).abs() < 0.01 * press, "{direction}: F_N {} for {}", other.f_n, one.f_n);
+        assert!((one.f_t - f_t).abs() < 0.01 * peak, "{direction}: F_T {f_t} for {}", one.f_t);
         assert!(across.abs() < most_across * peak, "{direction}: {across} across");
     }
 }

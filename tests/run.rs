@@ -428,14 +428,17 @@ fn a_contact_that_leaves_the_fine_mesh_is_computed_on_a_larger_one() {
     let narrow = "mesh.contact_radius=0.12";
     let scouted = scratch.run("scouted", &["--set", narrow]);
     let blind = scratch.run("blind", &["--set", narrow, "--set", "solver.error_estimate=false"]);
+    // Blind, a contact may leave the larger mesh as well.
     for (name, output, remeshed, note) in [
-        ("scouted", &scouted, 0, "note: the contact leaves the zone of 0.1560 R"),
-        ("blind", &blind, 1, "note: the contact reaches "),
+        ("scouted", &scouted, 0..=0, "note: the contact leaves the zone of 0.1560 R"),
+        ("blind", &blind, 1..=2, "note: the contact reaches "),
     ] {
         assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
         assert!(stderr(output).contains(note), "{}", stderr(output));
         let (history, summary) = results(&scratch.path(name));
-        assert_eq!((summary.status, summary.remeshed, summary.messages.len()), (RunStatus::Done, remeshed, 1), "{summary:?}");
+        let notes = (summary.messages.len(), summary.remeshed.max(1));
+        assert!(remeshed.contains(&summary.remeshed) && notes.0 == notes.1, "{summary:?}");
+        assert_eq!(summary.status, RunStatus::Done, "{summary:?}");
         assert_eq!(history[0].step, 1);
         assert_eq!(history.len(), summary.steps);
         assert!((summary.a0.expect("a radius") / 0.2087 - 1.0).abs() < 0.1, "{summary:?}");

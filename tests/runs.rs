@@ -115,7 +115,7 @@ fn a_plastic_sphere_dissipates_what_it_does_not_store() {
 #[test]
 fn reversal_unloading_and_release_keep_the_balance() {
     let mut errors = Vec::new();
-    for n in [10, 20] {
+    for n in [20, 40] {
         let records = run("reversal.toml", n, &[]);
         let ends = ends(&records);
         let signs: Vec<f64> = ends.iter().map(|r| r.f_t.signum()).collect();
@@ -127,9 +127,8 @@ fn reversal_unloading_and_release_keep_the_balance() {
         assert!(last.energy_elastic > 0.0 && last.h > 0.02 && last.h < 0.024, "{last:?}");
         errors.push(imbalance(&last).abs());
     }
-    // With finer steps it tends to 0.2 %, where the flow rule dissipates otherwise than the
-    // integral of sigma d alpha by the order of the elastic strain.
-    assert!(errors[0] < 0.01 && errors[1] < 0.004, "{errors:?}");
+    // 2.1 % with 10 steps, 0.37 % with 20, 0.12 % with 40.
+    assert!(errors[0] < 0.004 && errors[1] < 0.002, "{errors:?}");
 }
 
 #[test]

@@ -125,6 +125,7 @@ fn which_body_has_the_slaves_hardly_matters() {
             // iteration hard: steps are cut, which changes F_N more than the roles do.
             "opponent.material.youngs_modulus=200e3",
             "mesh.elements_per_contact_radius=8",
+            "mesh.surface_elements_per_contact_radius=16",
             "solver.press_steps=24",
             "solver.shear_steps=6",
             "path=[{indentation=0.02},{shear=0.001}]",

@@ -148,6 +148,7 @@ OF_MESHES = {name: ([MESH + file for file in files], ONES) for name, files in {
     "SHELL_DEPTH": ["sphere/layout.rs", "sphere/entry.rs"],
     "RING_GROWTH": ["sphere/layout.rs"],
     "LAYER_GROWTH": ["sphere/layout.rs"],
+    "SPREAD": ["sphere/layout.rs"],
     "SQUARENESS": ["sphere/layout.rs"],
     "WALL_ANGLE": ["sphere/geometry.rs"],
     "RIM_INCLINATION": ["sphere/geometry.rs"],

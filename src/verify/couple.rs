@@ -160,9 +160,12 @@ fn image(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
     image.opponent = Some(Opponent::Equal);
     case.opponent = Some(Opponent::Deforming { radius: Some(RADIUS), material: case.material.clone() });
     let (image, case) = (runner.follow(&image)?, runner.follow(&case)?);
-    let mut checks =
-        compared("equal sphere, meshed, and image", &case, &image, 1e-3, "slaves and masters are other nodes: the mesh's error");
+    let mut checks = compared("equal sphere, meshed, and image", &case, &image, 1e-3, "slaves and masters are other nodes");
     // Pressed, both have the same points; sheared, other ones are in contact at the edge.
+    for force in &mut checks[2..4] {
+        force.tolerance = Some(4e-3);
+        force.because = "other points at the edge: the mesh's error, 0.2 % on 8 elements, on 10 and 20 and on 8 and 16";
+    }
     if let Some(radius) = checks.last_mut() {
         radius.tolerance = Some(5e-3);
         radius.because = "other points at the edge: an element's share of the area";

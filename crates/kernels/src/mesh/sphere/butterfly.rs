@@ -148,6 +148,21 @@ impl Butterfly {
         if site.block == SIDE { 2 * site.at[0] > cells } else { 2 * site.at[0] < cells }
     }
 
+    /// The ring of a site of the whole blocks' shell, counted from the axis (in the centre block by
+    /// the squares around it), and its steps along the ring from the nearer of the axes x and y:
+    /// alike for two sites that are images in the diagonal.
+    pub fn on_ring(&self, site: Site) -> [usize; 2] {
+        let [a, b, _] = site.at;
+        let m = self.ny;
+        if site.block == SIDE {
+            let right = a.min(4 * m - a);
+            [m + b, right.min(2 * m - right)]
+        } else {
+            let right = a.abs_diff(m);
+            [right.max(b), right.min(b)]
+        }
+    }
+
     /// Faces on the sphere's surface over the centre block and the first `rings` rings,
     /// counter-clockwise seen from outside.
     pub fn surface_faces(&self, rings: usize) -> Vec<[u32; 4]> {

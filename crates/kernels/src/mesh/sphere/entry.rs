@@ -23,7 +23,7 @@ const REACH: f64 = 1.5;
 /// Spacings beyond over which the moves fade away.
 const FADING: f64 = 3.0;
 /// Radii closer than this, in spacings, count as equal: which of two such points comes first is
-/// then the angle's to say, not rounding's.
+/// then the place's on the mesh to say, not rounding's.
 const TIE: f64 = 1e-6;
 
 impl Layout {
@@ -48,6 +48,10 @@ fn even_entry(layout: &Layout) -> Vec<f64> {
     let mirrored: Vec<usize> = sites.iter().map(|&s| blocks.number(blocks.mirrored(s)) as usize).collect();
     let faces = blocks.surface_faces(blocks.nr);
     let even_end = layout.radii[layout.fine_rings].min(REACH * layout.shell_depth / SHELL_DEPTH);
+    // Images in the diagonal touch one after the other, by turns the one near x and the one near y
+    // first, along each ring and from ring to ring: neither axis has more of the early ones.
+    let place: Vec<[usize; 2]> = sites.iter().map(|&s| blocks.on_ring(s)).collect();
+    let turn = |n: usize| if (place[n][0] + place[n][1]) % 2 == 0 { -direction[n][0] } else { direction[n][0] };
     let mut radius = start.clone();
     // One of each mirrored pair; a pair touches at once.
     let mut order: Vec<usize> = (0..sites.len()).filter(|&n| !blocks.is_left(sites[n])).collect();
@@ -58,7 +62,10 @@ fn even_entry(layout: &Layout) -> Vec<f64> {
             face.iter().zip(shares).for_each(|(&n, share)| area[n as usize] += share);
         }
         let rank = |n: usize| (radius[n] / (TIE * layout.spacing)).round();
-        order.sort_by(|&a, &b| rank(a).total_cmp(&rank(b)).then(direction[b][0].total_cmp(&direction[a][0])));
+        order.sort_by(|&a, &b| {
+            let tie = || place[a].cmp(&place[b]).then(turn(a).total_cmp(&turn(b)));
+            rank(a).total_cmp(&rank(b)).then_with(tie)
+        });
         let mut inside = 0.0;
         let mut moved = radius.clone();
         for &n in &order {

@@ -105,7 +105,7 @@ impl<'a> Geometry<'a> {
         let shift = self.shift(site);
         let (angle, [across, up]) = match site.block {
             BOTTOM => self.bottom(big, t, c, shift),
-            SIDE => self.side(t, b, c, swap, shift),
+            SIDE => self.side(t, b, c, shift),
             CORE => self.core(big, t, c),
             _ => (0.0, [0.0; 2]),
         };
@@ -131,18 +131,17 @@ impl<'a> Geometry<'a> {
         Polar { radius: share * (1.0 + self.squareness(share) * (1.0 / angle.cos() - 1.0)), angle }
     }
 
-    /// Ring `r` on the surface: radius and angle; `swap` beyond the diagonal.
-    fn ring(&self, r: usize, t: f64, swap: bool) -> Polar {
+    /// Ring `r` on the surface: radius and angle.
+    fn ring(&self, r: usize, t: f64) -> Polar {
         let l = self.layout;
         let turn = smooth_step(r as f64 / l.rounding_rings as f64);
         let square = t.atan();
         let angle = square + turn * (t * FRAC_PI_4 - square);
         let square_offset = l.squareness * (1.0 / square.cos() - 1.0);
         let fade = 1.0 - smooth_step((r as f64 - l.fine_rings as f64) / l.fading_rings as f64);
-        // Even from the x axis to the y axis, so that the contact's edge meets every phase of the
-        // ring spacing equally often.
-        let quarter = if swap { 1.0 - 0.5 * t } else { 0.5 * t };
-        let spread = l.spread * quarter * l.spacing * fade;
+        // Even from either axis to the diagonal, so that the contact's edge meets every phase of
+        // the ring spacing equally often, and alike on both sides of the diagonal.
+        let spread = l.spread * t * l.spacing * fade;
         let radius = l.radii[r] + (1.0 - turn) * l.radii[r] * square_offset + turn * spread;
         Polar { radius: if r == l.blocks.nr { 2.0 } else { radius }, angle }
     }
@@ -211,11 +210,11 @@ impl<'a> Geometry<'a> {
     }
 
     /// A point of the shell's rings.
-    fn side(&self, t: f64, r: usize, d: usize, swap: bool, shift: f64) -> (f64, [f64; 2]) {
+    fn side(&self, t: f64, r: usize, d: usize, shift: f64) -> (f64, [f64; 2]) {
         if r == 0 {
             return self.bottom(self.layout.m, t, d, shift);
         }
-        let mut surface = self.ring(r, t, swap);
+        let mut surface = self.ring(r, t);
         surface.radius += shift;
         let end = self.core(self.layout.m, t, r);
         if r == self.layout.blocks.nr {

@@ -14,6 +14,8 @@ const RING_GROWTH: f64 = 1.22;
 const LAYER_GROWTH: f64 = 1.14;
 /// How square the centre block is, see [`Layout::squareness`].
 const SQUARENESS: f64 = 0.70;
+/// See [`Layout::spread`] and `benches/limits/ripple.py`.
+const SPREAD: f64 = 0.5;
 /// Smallest a/R for which a layout is made: that of a sphere ten times as large as the one pressed
 /// against it.
 const SMALLEST_CONTACT: f64 = 0.000_05;
@@ -53,8 +55,8 @@ pub struct Layout {
     /// Rings over which the square turns into the fine zone's rings.
     pub rounding_rings: usize,
     /// Spacings over which the distances of one ring's nodes from the pole are spread, evenly from
-    /// the x axis to the y axis: 1 makes the nodes enter a growing contact one by one instead of
-    /// ring by ring.
+    /// either axis to the diagonal: with some the nodes enter a growing contact one by one instead
+    /// of ring by ring.
     pub spread: f64,
     /// Radial moves of the surface nodes by their number, in the half ball's plane, that make them
     /// touch evenly; none if empty.
@@ -174,7 +176,7 @@ impl Layout {
             shell_depth,
             squareness: SQUARENESS,
             rounding_rings: (m / 2).max(1),
-            spread: 1.0,
+            spread: SPREAD,
             shifts: Vec::new(),
             fading_rings: outer.div_ceil(2),
             fine_radius,

@@ -1,4 +1,6 @@
-use super::butterfly::Butterfly;
+use super::butterfly::{BOTTOM, Butterfly, SIDE};
+use super::geometry::Geometry;
+use super::layout::stereographic;
 use super::*;
 use crate::mesh::connectivity::{FACES, boundary_faces};
 use crate::mesh::hierarchy::{Blocks, COARSEST_NODES, Site, coarse_cells};
@@ -190,10 +192,12 @@ fn contact_covers_the_fine_zone_with_its_areas() {
             let on_sphere = (rho(x).hypot(1.0 - x[2]) - 1.0).abs() < 1e-14;
             assert!(!(on_sphere && rho(x) < mesh.fine_radius) || mesh.contact_nodes.binary_search(&n).is_ok(), "{spec:?}: {x:?}");
         }
-        let (areas, spacing) = (&mesh.contact_area, spec.contact_radius / spec.elements_per_contact_radius as f64);
+        // Of the projection, which is true at the pole.
+        let spacing = stereographic(spec.contact_radius) / spec.elements_per_contact_radius as f64;
+        let areas = &mesh.contact_area;
         assert!(areas.len() == mesh.contact_nodes.len() && mesh.contact_size.len() == areas.len());
         let pole = mesh.contact_nodes.iter().position(|n| position(n) == [0.0; 3]).unwrap();
-        assert!((mesh.contact_size[pole] / spacing - 1.0).abs() < 0.16, "{spec:?}: {}", mesh.contact_size[pole] / spacing);
+        assert!((mesh.contact_size[pole] / spacing - 1.0).abs() < 0.08, "{spec:?}: {}", mesh.contact_size[pole] / spacing);
         assert!((areas[pole] / (mesh.contact_size[pole].powi(2) / 2.0) - 1.0).abs() < 0.05, "half, on the symmetry plane");
         for face in &mesh.contact_faces {
             let [a, b, _, d] = face.map(|n| position(&n));
@@ -307,6 +311,36 @@ fn the_contact_area_enters_evenly() {
         assert!(rms < 0.46 * ripple(&spread, 0.5, 1.0).0 && rms < 0.3 * ripple(&circles, 0.5, 1.0).0, "{count}: {rms}");
         let (rms, largest) = ripple(&chosen, 0.8, 1.3);
         assert!(rms < near && largest < 4.0 * near, "{count}: {rms} {largest}");
+    }
+}
+
+/// A shear along y meets the mesh that one along x meets, and one along the diagonal a mesh that is
+/// alike on both sides: images in the diagonal touch one after the other, and neither side first.
+#[test]
+fn neither_side_of_the_diagonal_lies_further_out() {
+    // Elements per contact radius; bounds, in spacings, on the root mean square of by how much
+    // images differ in radius, and on the mean over the rings of three spacings.
+    for (count, all, mean) in [(5, 0.22, 0.1), (8, 0.15, 0.1), (10, 0.12, 0.1), (16, 0.09, 0.1), (20, 0.08, 0.1)] {
+        let layout = Layout::new(&spec(0.2087, count, 1.3)).unwrap().touching_evenly();
+        let (geometry, m) = (Geometry::new(&layout), layout.m);
+        let radius = |block, at| {
+            let [x, y, _] = geometry.on_surface(Site { block, at });
+            x.hypot(y)
+        };
+        let of_squares = (1..=m).map(|big| {
+            let of = |small| radius(BOTTOM, [m + big, small, 0]) - radius(BOTTOM, [m + small, big, 0]);
+            (0..big).map(of).collect::<Vec<f64>>()
+        });
+        let of_rings = (1..=layout.fine_rings).map(|r| {
+            let of = |s| radius(SIDE, [s, r, 0]) - radius(SIDE, [2 * m - s, r, 0]);
+            (0..m).map(of).collect::<Vec<f64>>()
+        });
+        let rings: Vec<Vec<f64>> = of_squares.chain(of_rings).collect();
+        let mean_of = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64 / layout.spacing;
+        let squares: Vec<f64> = rings.concat().iter().map(|d| d * d).collect();
+        let rms = (mean_of(&squares) / layout.spacing).sqrt();
+        let largest = rings.windows(3).map(|three| mean_of(&three.concat()).abs()).fold(0.0, f64::max);
+        assert!(rms < all && largest < mean, "{count}: {rms} {largest}");
     }
 }
 
