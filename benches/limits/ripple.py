@@ -6,11 +6,12 @@
 
 Three contacts (ideal, linear, power law) are pressed on each mesh, 8/16 with 16 elements at the surface and 8 inside. A row has,
 for each mesh, mean and greatest of the three: F_N over its own parabola in ln h through the last twelve steps, greatest less least,
-in per cent. `--spreads` has other values of `Layout::spread` (crates/kernels/src/mesh/sphere/layout.rs): the first command makes a
+in per cent. A press has to have eight steps. `--spreads` has other values of `Layout::spread` (crates/kernels/src/mesh/sphere/layout.rs): the first command makes a
 program that reads it from a variable. What was computed before is taken from OUT. Standard library only.
 """
 
 import argparse
+import json
 import os
 import statistics
 import subprocess
@@ -25,6 +26,8 @@ CONTACTS = [
     [LAW + '{law="power",yield_stress=300.0,coefficient=1000.0,exponent=0.4}', f"{MU}=0.15", f"{H}=0.033"],
 ]
 MESHES = "4,4/8,5/10,6,6/12,8,7/14,8/16,9/18,10/20,12,12/24"
+# The program that reads the spread from a variable.
+VARIABLE = ROOT / "target/constants/build/release/constants"
 # A shear has to be there for the case; the least of one.
 SHORT = ["solver.error_estimate=false", "path.1.shear=1e-6"]
 
@@ -36,6 +39,8 @@ def main():
     parser.add_argument("--spreads", help="values of Layout::spread")
     parser.add_argument("--program", default=ROOT / "target/release/asperity")
     options = parser.parse_args()
+    if options.spreads and not VARIABLE.exists():
+        raise SystemExit(f"{VARIABLE} is not there: the first command above makes it")
     meshes = options.meshes.split(",")
     print(f"| spread | {' | '.join(meshes)} |\n{'|---' * (len(meshes) + 1)}|")
     for spread in options.spreads.split(",") if options.spreads else ["as it is"]:
@@ -55,12 +60,11 @@ def main():
 
 def with_spread(spread, out, settings):
     """The rows of a run with another spread, by the program of constants.py; computed unless they are there."""
-    if not (out / "summary.json").exists():
-        program = ROOT / "target/constants/build/release/constants"
+    if not (out / "summary.json").exists() or json.loads((out / "summary.json").read_text())["status"] != "done":
         case = ROOT / "fixtures/cases/ideal.toml"
         silent = ["output.plots=false", "output.fields=none"]
         environment = os.environ | {"SPREAD": spread, "RAYON_NUM_THREADS": "1"}
-        subprocess.run([program, "run", case, out, "5", "", *settings, *silent], check=True, env=environment)
+        subprocess.run([VARIABLE, "run", case, out, "5", "", *settings, *silent], check=True, env=environment)
     return run(None, out, [])[0]
 
 

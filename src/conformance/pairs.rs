@@ -26,17 +26,19 @@ pub struct Bounds {
     floor: f64,
     /// Of A z outside of the basis, of the first basis vector, of the force along the plate.
     share: f64,
-    /// After a V-cycle, of a vector's length; five times as much of its largest number. Without a
-    /// number that rounds the other way to the 16 bits of a smoother's rows it is 1e-6, with one up
-    /// to this, whose neighbours then have all of it (seeds of what is chance here).
-    cycle: f64,
+    /// Of a vector after a V-cycle: of its length, and in one place of its largest number. With a
+    /// number that rounds the other way to the 16 bits of a smoother's rows, which is chance, the
+    /// numbers beside it are off by 1e-5 to 2e-4, without one by 1e-6.
+    cycle: [f64; 2],
 }
 
 impl Bounds {
-    /// In f64 the solver's own single precision is left.
-    pub const F64: Self = Self { floor: 1.3e-5, share: 1e-5, cycle: 2e-4 };
-    /// In f32 the tangents' rounding too, by which more numbers round the other way.
-    pub const F32: Self = Self { floor: 5e-5, share: 5e-5, cycle: 1e-3 };
+    /// In f64 the solver's own single precision is left: 9e-5 and 2.1e-4 of a V-cycle on lavapipe
+    /// at most, in systems of four seeds.
+    pub const F64: Self = Self { floor: 1.3e-5, share: 1e-5, cycle: [2e-4, 5e-4] };
+    /// In f32 the tangents' rounding too, by which more numbers round the other way: 1.1e-3 and
+    /// 9e-4 in one system of 24, 2e-4 and 5e-4 in the others.
+    pub const F32: Self = Self { floor: 5e-5, share: 5e-5, cycle: [5e-4, 1e-3] };
 }
 
 /// Three pairs: elastic, plastic, nearly incompressible.
@@ -165,8 +167,9 @@ fn systems_are_the_cpus_on<R: DeviceReal>(context: &Arc<GpuContext>, bounds: &Bo
 }
 
 /// What a device leaves of residuals, and how many iterations it takes for that: as many as the
-/// CPU, one more or less, or of many a fifth: its cycles are half as long, and near the end of
-/// single precision, to which 1e-5 is close, the last ones are chance.
+/// CPU, one more or less, or of many a fifth: its cycles are half as long, and 1e-5 is so close to
+/// the end of single precision that the last ones are chance (29 and 33 here; with other seeds 44
+/// and 62, of whole spheres).
 fn meets_tolerances_as_the_cpu_does<R: DeviceReal>(context: &Arc<GpuContext>, bounds: &Bounds, models: &[CaseModel]) {
     let nodes = models[0].mesh.nodes.len();
     let mut gpu = Gpu::<R>::new(context.clone(), models.to_vec()).unwrap();
@@ -243,7 +246,7 @@ fn a_krylov_cycle_obeys_its_equations<R: DeviceReal>(context: &Arc<GpuContext>, 
             let largest = off.iter().fold(0.0f64, |m, off| m.max(off.abs())) / size;
             let all = (dot(&off, &off) / dot(z, z)).sqrt();
             log::debug!("case {case}, step {j}: {all:.1e}, {largest:.1e}");
-            let within = all <= bounds.cycle && largest <= 5.0 * bounds.cycle;
+            let within = all <= bounds.cycle[0] && largest <= bounds.cycle[1];
             assert!(within, "case {case}: the preconditioner's answer of step {j} is {all:e} off, in one place {largest:e}");
         }
     }

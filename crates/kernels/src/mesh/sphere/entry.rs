@@ -51,7 +51,7 @@ fn even_entry(layout: &Layout) -> Vec<f64> {
     // Images in the diagonal touch one after the other, by turns the one near x and the one near y
     // first, along each ring and from ring to ring: neither axis has more of the early ones.
     let place: Vec<[usize; 2]> = sites.iter().map(|&s| blocks.on_ring(s)).collect();
-    let turn = |n: usize| if (place[n][0] + place[n][1]) % 2 == 0 { -direction[n][0] } else { direction[n][0] };
+    let turn = |n: usize| if (place[n][0] + place[n][1]).is_multiple_of(2) { -direction[n][0] } else { direction[n][0] };
     let mut radius = start.clone();
     // One of each mirrored pair; a pair touches at once.
     let mut order: Vec<usize> = (0..sites.len()).filter(|&n| !blocks.is_left(sites[n])).collect();

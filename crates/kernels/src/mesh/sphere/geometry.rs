@@ -139,8 +139,8 @@ impl<'a> Geometry<'a> {
         let angle = square + turn * (t * FRAC_PI_4 - square);
         let square_offset = l.squareness * (1.0 / square.cos() - 1.0);
         let fade = 1.0 - smooth_step((r as f64 - l.fine_rings as f64) / l.fading_rings as f64);
-        // Even from either axis to the diagonal, so that the contact's edge meets every phase of
-        // the ring spacing equally often, and alike on both sides of the diagonal.
+        // Even from either axis to the diagonal, so that the contact's edge meets the phases of the
+        // ring spacing equally often, and alike on both sides of the diagonal.
         let spread = l.spread * t * l.spacing * fade;
         let radius = l.radii[r] + (1.0 - turn) * l.radii[r] * square_offset + turn * spread;
         Polar { radius: if r == l.blocks.nr { 2.0 } else { radius }, angle }
