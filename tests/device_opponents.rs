@@ -227,11 +227,11 @@ fn an_unlike_pair_has_the_cpus_history() {
 }
 
 /// Against a rigid sphere each step takes the CPU's iterations at the default tolerance and has its
-/// forces, with friction and without; no vector comes down in them. Of steps in f32 the residual in
-/// f64 has the say.
+/// forces, with friction and without: to 5e-6 of F_N, where a step is solved to 1e-4; no vector
+/// comes down in them. Of steps in f32 the residual in f64 has the say.
 #[test]
 fn a_rigid_sphere_stays_on_the_device() {
-    stays_on_the_device("a_rigid_sphere_stays_on_the_device", RIGID, &[], Some(2e-6));
+    stays_on_the_device("a_rigid_sphere_stays_on_the_device", RIGID, &[], Some(1e-5));
 }
 
 /// So stays an equal pair that is pressed and released, which meets in a plane where nothing slips.

@@ -183,8 +183,8 @@ fn tables_and_fields_of_a_turned_mesh_are_in_the_axes_of_the_case() {
 }
 
 /// The mesh's own anisotropy in two cycles, on half of the default mesh, step by step: F_T and F_N
-/// are within 1 %, and what is across within 0.3 %. On the default mesh F_T is 0.3 % off at most and
-/// 0.1 % across (`benches/turning/axes.py`).
+/// are within 1 %, and what is across within 0.3 %. On the default mesh F_T is 0.3 % off at most
+/// and 0.1 % across (`benches/turning/axes.py`).
 #[test]
 fn turned_cycles_have_the_forces_of_the_x_axis() {
     let along = cycle(&["indentation = 0.02", LAID_ALONG_X], 0.0);

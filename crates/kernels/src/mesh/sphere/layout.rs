@@ -54,9 +54,9 @@ pub struct Layout {
     pub squareness: f64,
     /// Rings over which the square turns into the fine zone's rings.
     pub rounding_rings: usize,
-    /// Spacings (of the elements inside, where the surface is finer) over which the distances of one
-    /// ring's nodes from the pole are spread, evenly from either axis to the diagonal: with none the
-    /// nodes would enter a growing contact ring by ring.
+    /// Spacings (of the elements inside, where the surface is finer) over which the distances of
+    /// one ring's nodes from the pole are spread, evenly from either axis to the diagonal: with
+    /// none the nodes would enter a growing contact ring by ring.
     pub spread: f64,
     /// Radial moves of the surface nodes by their number, in the half ball's plane, that make them
     /// touch evenly; none if empty.

@@ -320,8 +320,8 @@ fn the_contact_area_enters_evenly() {
 fn neither_side_of_the_diagonal_lies_further_out() {
     // In spacings, the mean over three rings of by how much images differ in radius: 0.06 to 0.09.
     const MEAN: f64 = 0.1;
-    // Elements per contact radius; halved at the surface; a bound on the root mean square (0.3 where
-    // rings are spread from x to y).
+    // Elements per contact radius; halved at the surface; a bound on the root mean square (0.3
+    // where rings are spread from x to y).
     let meshes = [(5, false, 0.22), (8, false, 0.15), (10, false, 0.12), (16, false, 0.09), (20, false, 0.08)];
     for (count, finer, all) in meshes.into_iter().chain([(5, true, 0.14), (10, true, 0.08)]) {
         let layout = Layout::new(&spec(0.2087, count, 1.3)).unwrap();
