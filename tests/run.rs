@@ -436,9 +436,8 @@ fn a_contact_that_leaves_the_fine_mesh_is_computed_on_a_larger_one() {
         assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
         assert!(stderr(output).contains(note), "{}", stderr(output));
         let (history, summary) = results(&scratch.path(name));
-        let notes = (summary.messages.len(), summary.remeshed.max(1));
-        assert!(remeshed.contains(&summary.remeshed) && notes.0 == notes.1, "{summary:?}");
-        assert_eq!(summary.status, RunStatus::Done, "{summary:?}");
+        assert!(remeshed.contains(&summary.remeshed), "{summary:?}");
+        assert_eq!((summary.status, summary.messages.len()), (RunStatus::Done, summary.remeshed.max(1)), "{summary:?}");
         assert_eq!(history[0].step, 1);
         assert_eq!(history.len(), summary.steps);
         assert!((summary.a0.expect("a radius") / 0.2087 - 1.0).abs() < 0.1, "{summary:?}");

@@ -6,19 +6,21 @@
 
 Three contacts (ideal, linear, power law) are pressed on each mesh, 8/16 with 16 elements at the surface and 8 inside. A row has,
 for each mesh, mean and greatest of the three: F_N over its own parabola in ln h through the last twelve steps, greatest less least,
-in per cent. A press has to have eight steps. `--spreads` has other values of `Layout::spread` (crates/kernels/src/mesh/sphere/layout.rs): the first command makes a
-program that reads it from a variable. What was computed before is taken from OUT. Standard library only.
+in per cent. With `--spreads` the rows are of other values of `Layout::spread` (crates/kernels/src/mesh/sphere/layout.rs), by the
+program that constants.py makes and that reads it from a variable. What was computed before is taken from OUT. Standard library
+only.
 """
 
 import argparse
-import json
-import os
 import statistics
-import subprocess
+import sys
 from pathlib import Path
 
 from judge import LAW, peak_to_peak
 from measure import H, MU, ROOT, mesh, run
+
+sys.path.append(str(ROOT / "benches/constants"))
+from constants import PLACE, called  # noqa: E402
 
 CONTACTS = [
     [],
@@ -27,7 +29,7 @@ CONTACTS = [
 ]
 MESHES = "4,4/8,5/10,6,6/12,8,7/14,8/16,9/18,10/20,12,12/24"
 # The program that reads the spread from a variable.
-VARIABLE = ROOT / "target/constants/build/release/constants"
+VARIABLE = PLACE / "build/release/constants"
 # A shear has to be there for the case; the least of one.
 SHORT = ["solver.error_estimate=false", "path.1.shear=1e-6"]
 
@@ -59,12 +61,11 @@ def main():
 
 
 def with_spread(spread, out, settings):
-    """The rows of a run with another spread, by the program of constants.py; computed unless they are there."""
-    if not (out / "summary.json").exists() or json.loads((out / "summary.json").read_text())["status"] != "done":
-        case = ROOT / "fixtures/cases/ideal.toml"
-        silent = ["output.plots=false", "output.fields=none"]
-        environment = os.environ | {"SPREAD": spread, "RAYON_NUM_THREADS": "1"}
-        subprocess.run([VARIABLE, "run", case, out, "5", "", *settings, *silent], check=True, env=environment)
+    """The rows of a run with another spread; computed unless they are there."""
+    if not (out / "summary.json").exists():
+        ended = called(VARIABLE, "run", out, [*settings, "output.plots=false", "output.fields=none"], {"SPREAD": spread})
+        if ended.returncode:
+            raise SystemExit(f"{out}: {ended.stderr}")
     return run(None, out, [])[0]
 
 
