@@ -227,7 +227,7 @@ fn check_tells_the_size_and_gives_json() {
         head[0].starts_with("# about ") && head[0].contains(" elements, ") && head[0].contains(" of processor time"),
         "{printed}"
     );
-    assert_eq!(head[1], "# press_steps = 25 and shear_steps = 15");
+    assert_eq!(head[1], "# press_steps = 25 and shear_steps = 24");
     let case = json(&asperity(&["check", "fixtures/cases/ideal.toml", "--json"]));
     assert_eq!((&case["kind"], &case["case"]["contact"]["friction"]), (&"case".into(), &0.3.into()));
     let number = |key: &str| case[key].as_f64().expect("a number");

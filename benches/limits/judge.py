@@ -2,10 +2,11 @@
 """What a mesh gets wrong, over contacts on which nothing was chosen: goals, and on how many contacts each is met.
 
     cargo build --release && python3 benches/limits/judge.py OUT [--drawn 20] [--seed 1] [--mesh default] [--reference 16/32]
-                                                             [--most 600] [--program PATH]
+                                                             [--steps 96] [--most 600] [--program PATH]
 
 The four contacts below and as many as asked, drawn by the seed (E/sigma_Y, mu, nu, h/R and the hardening), pressed and
-sheared to full slip. The truth is the limit that the reference mesh finds with its companion of half as many elements.
+sheared to full slip. The truth is the limit that the reference mesh finds with its companion of half as many elements,
+with four times the default's steps of a shear (two in the companion).
 Rows count from a tenth of the greatest indentation on. Errors are in per cent: of the greatest F_N and F_T for curves, of
 the value itself for the others. `told` is the run's own error. What was computed before is taken from OUT. An hour of
 processor time. Standard library only.
@@ -19,7 +20,7 @@ import statistics
 import subprocess
 from pathlib import Path
 
-from measure import CASES, H, LAW, MU, NU, ROOT, SIGMA, curve, mesh, missing, run
+from measure import CASES, H, LAW, MU, NU, ROOT, mesh, missing, run
 
 # Root mean square and largest error that a curve may have, or one bound for a number.
 GOALS = {"F_T_limit": (1.2, 2.0), "F_T": (2.0, 3.0), "F_N": (0.5, None), "F_T_max": (None, 0.5), "delta_T_95": (None, 1.5),
@@ -66,15 +67,6 @@ def summary(out):
     return json.loads((out / "summary.json").read_text())
 
 
-def reached(rows, ratio):
-    """delta_T at which F_T_limit/F_N_limit comes to `ratio`; None if it does not."""
-    points = [(x, t / n) for (x, t), (_, n) in zip(curve(rows, 1, "F_T_limit"), curve(rows, 1, "F_N_limit")) if n]
-    for (a, fa), (b, fb) in zip(points, points[1:]):
-        if fa < ratio <= fb:
-            return a + (b - a) * (ratio - fa) / (fb - fa)
-    return None
-
-
 def number(found, right, told=None):
     """A value's error in per cent of what is right, with the run's own."""
     error = 100 * (found / right - 1)
@@ -100,7 +92,7 @@ def peak_to_peak(rows):
     return 100 * (max(rest) - min(rest))
 
 
-def scores(rows, here, reference, there, mu):
+def scores(rows, here, reference, there):
     """Per quantity: rms and largest error; what was told of it (`held`), and told over true error (`over`)."""
     found, result = missing(rows, reference), {}
     for name in ("F_N", "F_T"):
@@ -118,7 +110,7 @@ def scores(rows, here, reference, there, mu):
         result["k_T0"] = number(here["k_T0"], there["k_T0"] + lacking, here["k_T0_error"])
     result["a0"] = number(here["a0"], there["a0"], here["a0_error"])
     for share in ("90", "95"):
-        right, limit = reached(reference, mu * int(share) / 100), reached(rows, mu * int(share) / 100)
+        right, limit = there[f"delta_T_{share}_limit"], here[f"delta_T_{share}_limit"]
         if right and limit and here[f"delta_T_{share}"]:
             result[f"delta_T_{share}"] = number(here[f"delta_T_{share}"], right, here[f"delta_T_{share}_error"])
             result[f"delta_T_{share}_limit"] = number(limit, right)
@@ -165,6 +157,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--mesh", default="default")
     parser.add_argument("--reference", default="16/32")
+    parser.add_argument("--steps", type=int, default=96, help="solver.shear_steps of the reference")
     parser.add_argument("--most", type=float, default=600.0, help="seconds that a run may take; of one that takes more nothing is said")
     parser.add_argument("--program", default=ROOT / "target/release/asperity")
     options = parser.parse_args()
@@ -173,12 +166,13 @@ def main():
     print(f"| case | {' | '.join(columns)} | CPU s |\n|{'---|' * (len(columns) + 2)}")
     everything = []
     for i, (name, settings) in enumerate({**NAMED, **drawn(options.drawn, options.seed)}.items()):
-        mu = next((float(word.split("=")[1]) for word in settings if word.startswith(MU)), 0.3)
         computed = []
-        for made in (options.reference, options.mesh):
-            place = options.out / f"{options.seed if i >= len(NAMED) else 'named'}-{i}-{made.replace('/', '-')}"
+        for made, steps in ((options.reference, options.steps), (options.mesh, None)):
+            drawn_by = options.seed if i >= len(NAMED) else "named"
+            place = options.out / "-".join([f"{drawn_by}-{i}", made.replace("/", "-"), *([f"{steps}"] if steps else [])])
+            more = ([f"solver.shear_steps={steps}"] if steps else []) + ([] if made == "default" else mesh(made))
             try:
-                rows, seconds = run(options.program, place, [*settings, *([] if made == "default" else mesh(made))], options.most)
+                rows, seconds = run(options.program, place, [*settings, *more], options.most)
             except subprocess.CalledProcessError as failed:
                 print(f"| {name} | {made}: exit code {failed.returncode} |", flush=True)
                 break
@@ -188,7 +182,7 @@ def main():
             computed.append((rows, summary(place)))
         else:
             (reference, there), (rows, here) = computed
-            everything.append(scores(rows, here, reference, there, mu))
+            everything.append(scores(rows, here, reference, there))
             cells = [cell(everything[-1].get(column)) for column in columns]
             print(f"| {name} | {' | '.join(cells)} | {seconds:.1f} |", flush=True)
     conclude(GOALS, everything)

@@ -358,8 +358,8 @@ pub const KEYS: &[Key] = &[
         range: "1 to 100000",
         meaning: "number of steps in the first part of a shear, while slip spreads over the contact. Their length grows from \
                   step to step; later steps are at least as long as the last of these",
-        example: "15",
-        ..key("solver", "shear_steps", Whole(1, 100_000), Optional("15"))
+        example: "24",
+        ..key("solver", "shear_steps", Whole(1, 100_000), Optional("24"))
     },
     Key {
         range: "1 to 1000",

@@ -28,6 +28,24 @@ impl Curve {
         Some([last[0], last[0] - before[0]])
     }
 
+    /// Where it first comes to y, which lies above its first point; `None` where none of its points
+    /// does.
+    pub fn reaches(&self, y: f64) -> Option<f64> {
+        let right = self.points.iter().position(|point| point[1] >= y)?;
+        let Some(left) = right.checked_sub(1) else { return Some(self.points[0][0]) };
+        let (mut below, mut above) = (self.points[left][0], self.points[right][0]);
+        // Between two points it rises or falls, and does not do both.
+        for _ in 0..f64::MANTISSA_DIGITS {
+            let between = 0.5 * (below + above);
+            if self.at(between)? < y {
+                below = between;
+            } else {
+                above = between;
+            }
+        }
+        Some(above)
+    }
+
     /// Its value at x. Outside of its points it goes on straight; a single point is constant.
     /// `None` if there is none.
     pub fn at(&self, x: f64) -> Option<f64> {
@@ -99,6 +117,25 @@ mod tests {
         let curve = Curve::through((0..=4).map(|i| 0.25 * f64::from(i)).map(|x| [x, arc(x)]));
         let worst = (0..=100).map(|i| 0.01 * f64::from(i)).map(|x| (curve.at(x).unwrap() - arc(x)).abs()).fold(0.0, f64::max);
         assert!(worst < 0.006, "{worst}");
+    }
+
+    #[test]
+    fn it_comes_first_to_a_value_where_a_rise_passes_it() {
+        let arc = |x: f64| x * (2.0 - x);
+        let curve = Curve::through((0..=8).map(|i| 0.25 * f64::from(i)).map(|x| [x, arc(x)]));
+        for wanted in [0.1, 0.5, 0.9375, 0.99] {
+            let x = curve.reaches(wanted).unwrap();
+            assert!(
+                (curve.at(x).unwrap() - wanted).abs() < 1e-12 && (x - (1.0 - (1.0 - wanted).sqrt())).abs() < 0.02,
+                "{wanted}: {x}"
+            );
+        }
+        assert_eq!((curve.reaches(0.0), curve.reaches(1.01)), (Some(0.0), None));
+        // The summit is flat: within rounding a place before it is as high.
+        assert!((curve.reaches(1.0).unwrap() - 1.0).abs() < 1e-7);
+        let twice = Curve::through([[0.0, 0.0], [1.0, 2.0], [2.0, -1.0], [3.0, 2.0]]);
+        assert!(twice.reaches(1.0).is_some_and(|x| x < 1.0 && (twice.at(x).unwrap() - 1.0).abs() < 1e-12));
+        assert_eq!(Curve::default().reaches(0.0), None);
     }
 
     #[test]

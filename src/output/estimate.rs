@@ -1,6 +1,7 @@
 //! The discretisation errors of the numbers of a summary, as its rows and its companion tell them,
 //! and the ripple of the press curve.
 
+use super::curve::Curve;
 use super::first_shear::{SLIP_DISPLACEMENT_RATIOS, first_shear};
 use super::limit::{TANGENTIAL_SHARE, size};
 use super::{Limits, StepLimits, StepRecord};
@@ -97,17 +98,10 @@ fn displacement_error(curve: &RatioCurve, wanted: f64) -> Option<f64> {
     None
 }
 
-/// The displacement at which the limit of F_T/F_N reaches `wanted`, linear in between.
+/// The displacement at which the limit of F_T/F_N reaches `wanted`.
 fn limit_reaches(curve: &RatioCurve, wanted: f64) -> Option<f64> {
-    let mut before = [0.0; 3];
-    for point in curve {
-        let now = (*point)?;
-        if now[2] >= wanted {
-            return Some(before[0] + (now[0] - before[0]) * (wanted - before[2]) / (now[2] - before[2]));
-        }
-        before = now;
-    }
-    None
+    let known = curve.iter().map_while(|point| point.map(|[displacement, _, limit]| [displacement, limit]));
+    Curve::through(std::iter::once([0.0; 2]).chain(known)).reaches(wanted)
 }
 
 /// Root mean square of ln F_N about a quadratic in ln h fitted to the first press, from a quarter

@@ -35,8 +35,13 @@ const NORMAL_SHARE: f64 = 0.85;
 /// What is missing of F_T/F_N is missing of F_N too, as the surface yields to p and q together:
 /// F_N falls with (F_T/F_N)^2. So much of F_T/F_N, times what it lacks, times F_N.
 const COUPLED_SHARE: f64 = 4.0;
-/// Estimated error of F_T in what F_T/F_N lacks, times F_N; that of F_N comes to it.
-pub(super) const TANGENTIAL_SHARE: f64 = 1.75;
+/// Estimated error of F_T in what F_T/F_N lacks, times F_N; that of F_N comes to it, and so does
+/// the next share. Both are round numbers at which `benches/limits/judge.py` finds the curves of
+/// F_T of 14 of 16 contacts covered, at 2.9 times the true errors (median).
+pub(super) const TANGENTIAL_SHARE: f64 = 1.5;
+/// What the two runs do not show of F_T, in mu F_N: their difference changes its sign on the way,
+/// and they share errors. Without it a third of the curves is covered.
+const UNSEEN_SHARE: f64 = 0.005;
 
 /// F_T/F_N over mu from which on a companion that was sheared to full slip counts as sliding. It is
 /// nearer to mu where every point slips, but for a pair whose spheres have passed each other.
@@ -189,6 +194,7 @@ impl Limits {
         let ratio_error = self.factor() * differences.map(size).fold(0.0, f64::max);
         let ratio = size([row.f_t, row.f_t_y]) / row.f_n;
         let ripple = NORMAL_SHARE * f_n_usual;
+        let unseen = UNSEEN_SHARE * self.friction.unwrap_or(ratio) * row.f_n;
         let bound = self.friction.unwrap_or(f64::INFINITY);
         let [along, across] =
             within([row.f_t / row.f_n + self.factor() * difference, row.f_t_y / row.f_n + self.factor() * across], bound);
@@ -196,7 +202,7 @@ impl Limits {
             f_t_limit: Some(along * f_n_limit),
             f_t_y_limit: Some(across * f_n_limit),
             f_n_limit: Some(f_n_limit),
-            f_t_error: Some((TANGENTIAL_SHARE * ratio_error * row.f_n).hypot(ratio * ripple)),
+            f_t_error: Some((TANGENTIAL_SHARE * ratio_error * row.f_n).hypot(ratio * ripple).hypot(unseen)),
             f_n_error: Some(ripple.hypot(COUPLED_SHARE * ratio * ratio_error * row.f_n)),
             a_error,
         }

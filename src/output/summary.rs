@@ -1,5 +1,6 @@
 //! `summary.json`: one run in some numbers, and how they are read off its history.
 
+use super::curve::Curve;
 use super::first_shear::{SLIP_DISPLACEMENT_RATIOS, first_shear};
 use super::units::coefficient;
 use super::{ErrorEstimate, OutputError, StepRecord, TimeByPhase, plain_json, write_atomically};
@@ -255,8 +256,7 @@ impl Summary {
                 let slip = shear.iter().zip(&points).find(|(record, point)| in_full_slip(record, point, mu));
                 summary.f_n_slip = slip.map(|(record, _)| record.f_n);
                 summary.full_slip_reached = slip.is_some();
-                let curve = || points.iter().map(|point| (point.displacement, point.ratio));
-                let [to_90, to_95, to_slip] = SLIP_DISPLACEMENT_RATIOS.map(|share| displacement_at(curve(), share * mu));
+                let [to_90, to_95, to_slip] = SLIP_DISPLACEMENT_RATIOS.map(|share| displacement_at(&points, share * mu));
                 (summary.delta_t_90, summary.delta_t_95, summary.delta_t_slip) = (to_90, to_95, to_slip);
             }
         }
@@ -346,20 +346,11 @@ fn in_full_slip(record: &StepRecord, point: &ShearPoint, mu: f64) -> bool {
     all_slip || point.ratio.is_some_and(|ratio| ratio >= FULL_SLIP_RATIO * mu)
 }
 
-/// The displacement at which a curve of |F_T|/F_N over it, which begins at the origin, first
-/// reaches `wanted`, linear between its points; `None` if it does not, or at a point without a
-/// ratio before.
-fn displacement_at(curve: impl Iterator<Item = (f64, Option<f64>)>, wanted: f64) -> Option<f64> {
-    let (mut before, mut ratio) = (0.0, 0.0);
-    for (displacement, now) in curve {
-        let now = now?;
-        if now >= wanted {
-            let share = if now > ratio { ((wanted - ratio) / (now - ratio)).max(0.0) } else { 0.0 };
-            return Some(before + share * (displacement - before));
-        }
-        (before, ratio) = (displacement, now);
-    }
-    None
+/// The displacement at which the curve of |F_T|/F_N over it, which begins at the origin, first
+/// reaches `wanted`; `None` if it does not, or at a point without a ratio before.
+fn displacement_at(points: &[ShearPoint], wanted: f64) -> Option<f64> {
+    let known = points.iter().map_while(|point| Some([point.displacement, point.ratio?]));
+    Curve::through(std::iter::once([0.0; 2]).chain(known)).reaches(wanted)
 }
 
 #[cfg(test)]
@@ -432,7 +423,7 @@ mod tests {
             close(summary.f_n_slip, contact.normal_force, 1e-14);
             close(summary.f_t_max, MU * contact.normal_force, 1e-12);
             close(summary.k_t0, contact.initial_stiffness(), 1e-14);
-            // 1 - (1 - x)^1.5 is 0.90, 0.95 and 0.99 there; linear within a step of 0.1 d_s.
+            // 1 - (1 - x)^1.5 is 0.90, 0.95 and 0.99 there; steps of 0.1 d_s.
             close(summary.delta_t_90, 0.7846 * contact.slip_displacement(), 0.02);
             close(summary.delta_t_95, 0.8643 * contact.slip_displacement(), 0.02);
             close(summary.delta_t_slip, 0.9536 * contact.slip_displacement(), 0.02);

@@ -58,7 +58,7 @@ pub fn by_descending_cost(costs: &[f64]) -> Vec<usize> {
     order
 }
 
-/// Steps of a shear to full slip, typically.
+/// Steps of a press that take as long as a shear to full slip, typically.
 const SHEAR_STEPS: f64 = 22.0;
 
 /// How long a case is likely to take, in no unit: elements times steps, and more where plastic
