@@ -70,12 +70,12 @@ fn a_shear_is_that_of_the_limit_of_fine_meshes() {
         assert!(off.abs() <= 0.01, "F_N at {delta_t}: {off} off");
     }
     // The aims for F_T as it is were 2 and 3 %: it is 2.3 and 3.2 off. That is the mesh: with 15
-    // steps an error of theirs of the other sign makes 2.15 and 2.97 of it. The limit is 1.05 % off.
-    // From that of 16 inside and 32 at the surface in 96 steps they are 1.7, 2.9 and 0.65 off.
+    // steps an error of theirs of the other sign makes 2.15 and 2.97 of it. The limit is 1.05 %
+    // off. From that of 16 inside and 32 at the surface in 96 steps they are 1.7, 2.9 and 0.65 off.
     assert!(squares.sqrt() <= 0.012 && raw.sqrt() <= 0.024, "{} and {} rms", squares.sqrt(), raw.sqrt());
     close(summary.f_n0.expect("F_N0"), 150.0, 0.005, "F_N0");
-    // The limit of 16 inside and 32 at the surface, on this mesh and on one whose surface nodes lie
-    // elsewhere; the run's own is 0.6 % off, F_T_max 0.8 %.
+    // The limit of 16 inside and 32 at the surface in 15 steps, on this mesh and on one whose
+    // surface nodes lie elsewhere (30.25 in 96); the run's own is 0.6 % off, F_T_max 0.8 %.
     close(summary.f_t_max_limit.expect("a limit"), 30.31, 0.01, "the limit of F_T_max");
     // Within 1.5 % of what they may be, 0.00217 +- 0.00004 and 0.00249 +- 0.00005.
     let found = [summary.delta_t_90_limit, summary.delta_t_95_limit].map(|limit| limit.expect("a limit"));

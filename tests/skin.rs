@@ -21,9 +21,12 @@ fn rows(text: &str, settings: &[String]) -> Vec<StepRecord> {
     let mut recorder = Recorder::new(&case, None);
     let followed = follow(Problem::new(&case).expect("a problem"), None, &mut |problem| on_cpu(problem), &mut recorder);
     assert_eq!(followed.expect("no failure of the program").ending, Ending::Done, "{settings:?}");
-    // On 4 inside and 16 at the surface one point is let go in one step far beyond full slip.
-    let relaxed: Vec<usize> = recorder.rows.iter().map(|row| row.relaxed).filter(|&points| points > 0).collect();
-    assert!(relaxed.is_empty() || relaxed == [1], "{settings:?}: {relaxed:?}");
+    // On 4 inside and 16 at the surface one point is let go in one step, at twice the way to slip.
+    let relaxed: Vec<(f64, usize)> =
+        recorder.rows.iter().filter(|row| row.relaxed > 0).map(|row| (row.delta_t, row.relaxed)).collect();
+    let is_coarse = settings.contains(&format!("{SURFACE}=16")) && settings.contains(&format!("{MESH}=4"));
+    let is_beyond = matches!(relaxed[..], [(delta_t, 1)] if is_coarse && delta_t > 0.005);
+    assert!(relaxed.is_empty() || is_beyond, "{settings:?}: {relaxed:?}");
     recorder.rows
 }
 

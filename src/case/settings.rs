@@ -75,7 +75,7 @@ pub struct Solver {
     /// as many as the mesh asks for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub press_steps: Option<usize>,
-    /// Steps of the first part of a shear segment, in which points come to slip; by default 15.
+    /// Steps of the first part of a shear segment, in which points come to slip; by default 24.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shear_steps: Option<usize>,
     /// Newton iterations of a step before it is cut in half.

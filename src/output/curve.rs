@@ -28,8 +28,8 @@ impl Curve {
         Some([last[0], last[0] - before[0]])
     }
 
-    /// Where it first comes to y, which lies above its first point; `None` where none of its points
-    /// does.
+    /// Where it first comes to y: at its first point if that is no lower. `None` where none of its
+    /// points is as high.
     pub fn reaches(&self, y: f64) -> Option<f64> {
         let right = self.points.iter().position(|point| point[1] >= y)?;
         let Some(left) = right.checked_sub(1) else { return Some(self.points[0][0]) };

@@ -1,8 +1,7 @@
 //! The discretisation errors of the numbers of a summary, as its rows and its companion tell them,
 //! and the ripple of the press curve.
 
-use super::curve::Curve;
-use super::first_shear::{SLIP_DISPLACEMENT_RATIOS, first_shear};
+use super::first_shear::{SLIP_DISPLACEMENT_RATIOS, first_shear, reaches};
 use super::limit::{TANGENTIAL_SHARE, size};
 use super::{Limits, StepLimits, StepRecord};
 
@@ -100,8 +99,7 @@ fn displacement_error(curve: &RatioCurve, wanted: f64) -> Option<f64> {
 
 /// The displacement at which the limit of F_T/F_N reaches `wanted`.
 fn limit_reaches(curve: &RatioCurve, wanted: f64) -> Option<f64> {
-    let known = curve.iter().map_while(|point| point.map(|[displacement, _, limit]| [displacement, limit]));
-    Curve::through(std::iter::once([0.0; 2]).chain(known)).reaches(wanted)
+    reaches(curve.iter().map_while(|point| point.map(|[displacement, _, limit]| [displacement, limit])), wanted)
 }
 
 /// Root mean square of ln F_N about a quadratic in ln h fitted to the first press, from a quarter

@@ -1,6 +1,7 @@
 //! The first shear of a history, which the numbers of a summary are of.
 
 use super::StepRecord;
+use super::curve::Curve;
 
 /// delta_T_slip is the displacement at which |F_T|/F_N first reaches this share of mu: the last per
 /// cent of the curve is so flat that where it ends depends on mesh and steps.
@@ -8,6 +9,14 @@ pub const SLIP_DISPLACEMENT_RATIO: f64 = 0.99;
 /// The same for delta_T_90 and delta_T_95, which have limits, and for delta_T_slip, which is a
 /// convention.
 pub(super) const SLIP_DISPLACEMENT_RATIOS: [f64; 3] = [0.90, 0.95, SLIP_DISPLACEMENT_RATIO];
+
+/// Where a smooth curve through the origin and these points of |F_T|/F_N over the displacement
+/// first comes to `wanted`; `None` if it does not, or if there are no points.
+pub(super) fn reaches(points: impl Iterator<Item = [f64; 2]>, wanted: f64) -> Option<f64> {
+    let mut points = points.peekable();
+    points.peek()?;
+    Curve::through(std::iter::once([0.0; 2]).chain(points)).reaches(wanted)
+}
 
 /// The last record before the first shear and the records of that shear, up to where it stops or
 /// turns. Without a shear the record of the greatest indentation and nothing.

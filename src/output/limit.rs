@@ -29,7 +29,7 @@ const WINDOW: usize = 10;
 /// mesh almost as coarse as its companion's is not compared.
 const MOST_FACTOR: f64 = 3.0;
 /// Estimated error of F_N, and of a, in the mean difference from the companion. This share and the
-/// two below are round numbers at which nine in ten errors are covered in the table that
+/// next are round numbers at which nine in ten errors of F_N are covered in the table that
 /// `benches/limits/measure.py` prints, whose truth is extrapolated from 8 and 16 elements.
 const NORMAL_SHARE: f64 = 0.85;
 /// What is missing of F_T/F_N is missing of F_N too, as the surface yields to p and q together:
@@ -39,8 +39,8 @@ const COUPLED_SHARE: f64 = 4.0;
 /// the next share. Both are round numbers at which `benches/limits/judge.py` finds the curves of
 /// F_T of 14 of 16 contacts covered, at 2.9 times the true errors (median).
 pub(super) const TANGENTIAL_SHARE: f64 = 1.5;
-/// What the two runs do not show of F_T, in mu F_N: their difference changes its sign on the way,
-/// and they share errors. Without it a third of the curves is covered.
+/// What the two runs do not show of F_T from the first shear on, in mu F_N: their difference
+/// changes its sign on the way, and they share errors. Without it a third of the curves is covered.
 const UNSEEN_SHARE: f64 = 0.005;
 
 /// F_T/F_N over mu from which on a companion that was sheared to full slip counts as sliding. It is
@@ -142,7 +142,7 @@ impl Limits {
     }
 
     /// Estimated error of the tangent dF_T/d delta_T at the start of a shear, of which `first` is
-    /// the first row: what it lacks at first order, and three quarters more, as of F_T/F_N.
+    /// the first row: what it lacks at first order, and half as much again, as of F_T/F_N.
     pub fn stiffness_error(&self, first: &StepRecord) -> Option<f64> {
         let there = self.stiffness.get(first.segment).copied().flatten()?;
         let error = TANGENTIAL_SHARE * self.factor() * (first.k_t? - there).abs();
@@ -194,7 +194,9 @@ impl Limits {
         let ratio_error = self.factor() * differences.map(size).fold(0.0, f64::max);
         let ratio = size([row.f_t, row.f_t_y]) / row.f_n;
         let ripple = NORMAL_SHARE * f_n_usual;
-        let unseen = UNSEEN_SHARE * self.friction.unwrap_or(ratio) * row.f_n;
+        // By symmetry a press has no F_T.
+        let scale = if row.segment < self.first_sheared() { 0.0 } else { self.friction.unwrap_or(ratio) };
+        let unseen = UNSEEN_SHARE * scale * row.f_n;
         let bound = self.friction.unwrap_or(f64::INFINITY);
         let [along, across] =
             within([row.f_t / row.f_n + self.factor() * difference, row.f_t_y / row.f_n + self.factor() * across], bound);
@@ -220,9 +222,7 @@ impl Limits {
         if !self.path.get(row.segment).is_some_and(is_shear) {
             return 0.0;
         }
-        let is_sheared = |segment: &Segment| !matches!(segment, Segment::Indentation { .. } | Segment::Release { .. });
-        let first = self.path.iter().position(is_sheared).unwrap_or(row.segment);
-        let press = before.partition_point(|earlier| earlier.segment < first);
+        let press = before.partition_point(|earlier| earlier.segment < self.first_sheared());
         let pressed = self.last_compared(&before[..press], WINDOW);
         if pressed.is_empty() {
             return 0.0;
@@ -232,6 +232,12 @@ impl Limits {
         let last = pressed.last().map_or(0.0, |(row, there)| self.factor() * (row.f_n - there.f_n).abs());
         let level = self.mean(&pressed, |row, there| Some(row.f_n - there.f_n)).max(last);
         difference.signum() * (difference.abs() - level).max(0.0)
+    }
+
+    /// The first segment that is no press and no release.
+    fn first_sheared(&self) -> usize {
+        let is_sheared = |segment: &Segment| !matches!(segment, Segment::Indentation { .. } | Segment::Release { .. });
+        self.path.iter().position(is_sheared).unwrap_or(self.path.len())
     }
 
     /// The last rows, at most so many, with their counterparts, as far back as there are some.

@@ -1,7 +1,6 @@
 //! `summary.json`: one run in some numbers, and how they are read off its history.
 
-use super::curve::Curve;
-use super::first_shear::{SLIP_DISPLACEMENT_RATIOS, first_shear};
+use super::first_shear::{SLIP_DISPLACEMENT_RATIOS, first_shear, reaches};
 use super::units::coefficient;
 use super::{ErrorEstimate, OutputError, StepRecord, TimeByPhase, plain_json, write_atomically};
 use crate::bounded;
@@ -123,8 +122,8 @@ pub struct Summary {
     /// Greatest |F_T| of the shear.
     #[serde(rename = "F_T_max")]
     pub f_t_max: Option<f64>,
-    /// Displacement from the start of the shear to |F_T|/F_N = 0.90 mu, interpolated linearly
-    /// within the step.
+    /// Displacement from the start of the shear to |F_T|/F_N = 0.90 mu, on a smooth curve through
+    /// the steps.
     #[serde(rename = "delta_T_90")]
     pub delta_t_90: Option<f64>,
     /// The same to 0.95 mu.
@@ -349,8 +348,7 @@ fn in_full_slip(record: &StepRecord, point: &ShearPoint, mu: f64) -> bool {
 /// The displacement at which the curve of |F_T|/F_N over it, which begins at the origin, first
 /// reaches `wanted`; `None` if it does not, or at a point without a ratio before.
 fn displacement_at(points: &[ShearPoint], wanted: f64) -> Option<f64> {
-    let known = points.iter().map_while(|point| Some([point.displacement, point.ratio?]));
-    Curve::through(std::iter::once([0.0; 2]).chain(known)).reaches(wanted)
+    reaches(points.iter().map_while(|point| Some([point.displacement, point.ratio?])), wanted)
 }
 
 #[cfg(test)]

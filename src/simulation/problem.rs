@@ -71,7 +71,7 @@ const PRESS_STEPS: f64 = 14.0;
 const PRESS_STEPS_PER_ELEMENT: f64 = 0.75;
 /// Growing steps of a shear. With 15, 20, 24 and 30 `F_T_limit` is 0.62, 0.52, 0.47 and 0.42 % rms
 /// off on eight contacts of `benches/limits/judge.py`, as the companion has half as many; 24 take
-/// 3 % more time than 15. Half and twice of it: `benches/constants`.
+/// 4 % more time than 15. Half and twice of it: `benches/constants`.
 const SHEAR_STEPS: usize = 24;
 /// Two bodies have their linear systems solved further than one: by how much the loosest tolerance
 /// is smaller, and how far the first of a step is solved (see [`first_linear`]). Else points that

@@ -94,6 +94,25 @@ fn an_error_of_first_order_is_taken_out_of_the_tangential_force() {
     }
 }
 
+/// Where the two runs agree, half a per cent of mu F_N is told from the first shear on; of F_T
+/// where nothing slips.
+#[test]
+fn what_the_runs_do_not_show_of_the_tangential_force_is_told() {
+    for stuck in [false, true] {
+        let mut case = case(PATH);
+        if stuck {
+            case.contact.friction = Friction::Stick;
+        }
+        let mut rows = run(16.0, 26, 20, 0.0025);
+        Limits::new(&case, &scout(&rows, 8, &case), 0.2 / 16.0).expect("limits").write_into(&mut rows);
+        for row in &rows {
+            let scale = if stuck { row.f_t } else { MU * row.f_n };
+            let told = if row.segment == 0 { 0.0 } else { 0.005 * scale };
+            assert!((row.f_t_error.expect("an error") - told).abs() < 1e-6, "{told} for {row:?}");
+        }
+    }
+}
+
 #[test]
 fn rows_one_by_one_have_the_bits_of_all_at_once() {
     let case = case(PATH);
