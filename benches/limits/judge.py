@@ -6,8 +6,8 @@
 
 The four contacts below and as many as asked, drawn by the seed (E/sigma_Y, mu, nu, h/R and the hardening), pressed and
 sheared to full slip. The truth is the limit that the reference mesh finds with its companion of half as many elements,
-with four times the default's steps of a shear (twice in its companion). The shares of F_T_error and the steps of a shear
-were chosen on seed 1.
+with four times the default's steps of a shear (twice in its companion). The shares of F_T_error (shares.py) and the
+steps of a shear were chosen on contacts of seeds 1 and 2.
 Rows count from a tenth of the greatest indentation on. Errors are in per cent: of the greatest F_N and F_T for curves, of
 the value itself for the others. `told` is the run's own error. What was computed before is taken from OUT. Some hours of
 processor time. Standard library only.

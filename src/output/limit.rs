@@ -36,8 +36,8 @@ const NORMAL_SHARE: f64 = 0.85;
 /// F_N falls with (F_T/F_N)^2. So much of F_T/F_N, times what it lacks, times F_N.
 const COUPLED_SHARE: f64 = 4.0;
 /// Estimated error of F_T in what F_T/F_N lacks, times F_N; that of F_N comes to it, and so does
-/// the next share. Both are round numbers at which `benches/limits/judge.py` finds the curves of
-/// F_T of 14 of 16 contacts covered, at 2.9 times the true errors (median).
+/// the next share. Both are round numbers by `benches/limits/shares.py`: the curves of F_T of 16 of
+/// 19 contacts are covered, at 3.0 times the true errors (median).
 pub(super) const TANGENTIAL_SHARE: f64 = 1.5;
 /// What the two runs do not show of F_T from the first shear on, in mu F_N: their difference
 /// changes its sign on the way, and they share errors. Without it a third of the curves is covered.
