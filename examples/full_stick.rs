@@ -66,7 +66,8 @@ impl Setup {
         let a = predicted_contact_radius(self.stiffness, NU, |alpha| self.flow_stress(alpha), self.indentation);
         let text = format!(
             "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = {:e}\npoissons_ratio = {NU}\n[material.hardening]\nlaw = \"linear\"\n\
-             yield_stress = 1.0\nmodulus = {:e}\n[contact]\nfriction = \"stick\"\n[mesh]\nelements_per_contact_radius = {}\nsurface_elements_per_contact_radius = {}\ncontact_radius = {:e}\nfine_zone = 1.6\n\
+             yield_stress = 1.0\nmodulus = {:e}\n[contact]\nfriction = \"stick\"\n[mesh]\nelements_per_contact_radius = {}\n\
+             surface_elements_per_contact_radius = {}\ncontact_radius = {:e}\nfine_zone = 1.6\n\
              [solver]\nshear_steps = {}\n[[path]]\nindentation = {:e}\n[[path]]\nshear = {:e}\nhold = \"normal-force\"\n",
             self.stiffness,
             self.modulus(),
@@ -259,7 +260,7 @@ mod tests {
     fn pressed_to_42(elements: usize, finer: usize, tangent: f64) -> Outcome {
         let setup = Setup { elements, finer, stiffness: 500.0, tangent, indentation: 2.8e-4, shear: 0.04, shear_steps: 15 };
         let outcome = shear(&setup).expect("the path is followed to its end");
-        println!("{elements} elements, E_t = {tangent} E: {outcome:?}");
+        println!("{elements} elements, {finer} times as many at the surface, E_t = {tangent} E: {outcome:?}");
         outcome
     }
 
